@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/types/ids.hpp"
+#include "core/types/mesh_data.hpp"
+#include "core/types/point.hpp"
+
+namespace tinsmith::core {
+
+/// Axis-aligned box around all vertices, in the session's unit.
+struct Bounds {
+    Point3 min;
+    Point3 max;
+};
+
+/// A 2.5D triangulation: one elevation for each plan position of its domain, which may be
+/// concave, have holes, and consist of several components.
+///
+/// What always holds (each line is a check in `check_tin`):
+///   1. every triangle is strictly counter-clockwise in plan, by the exact predicate;
+///   2. adjacency is symmetric: the twin of a side's twin is the side;
+///   3. a vertex's triangle contains it; every vertex has one, and one fan of triangles only;
+///   4. both sides of an edge carry the same marks;
+///   5. all coordinates are finite and within kCoordinateLimit.
+///
+/// Local numbering, for the whole library:
+///
+///              v2
+///             /  \            side i runs from vertex i to vertex (i+1) mod 3;
+///     side 2 /    \ side 1    twins[i] is the other side of that edge,
+///           /      \          invalid on the boundary.
+///         v0 ------ v1
+///            side 0
+///
+/// Slots are stable: an operation appends and rewrites, it never renumbers.
+/// Memory: 32 bytes a vertex and 32 bytes a triangle, about 48 bytes a triangle in all.
+/// Source: Stanchev & Paraskevov 2023, section 3.1, with indices for pointers and twins for
+/// neighbours.
+class Tin {
+  public:
+    struct Vertex {
+        double x;
+        double y;
+        double z;
+        TriangleId triangle;  ///< any one triangle around the vertex
+
+        Point2 plan() const { return {x, y}; }
+        Point3 point() const { return {x, y, z}; }
+    };
+
+    struct Triangle {
+        std::array<VertexId, 3> vertices;
+        std::array<Side, 3> twins;
+        FacetId facet;
+        std::uint32_t marks;  ///< bit i: side i is constrained; bit 4 + i: side i is locked
+
+        friend bool operator==(const Triangle&, const Triangle&) = default;
+    };
+
+    std::size_t vertex_count() const { return vertices_.size(); }
+    std::size_t triangle_count() const { return triangles_.size(); }
+
+    const Vertex& vertex(VertexId id) const { return vertices_[id.index()]; }
+    const Triangle& triangle(TriangleId id) const { return triangles_[id.index()]; }
+    Point2 plan(VertexId id) const { return vertices_[id.index()].plan(); }
+
+    VertexId origin(Side s) const { return triangle(s.triangle()).vertices[s.index()]; }
+    VertexId destination(Side s) const {
+        return triangle(s.triangle()).vertices[Side::next_of(s.index())];
+    }
+    /// The vertex across from the side, in the side's triangle.
+    VertexId apex(Side s) const {
+        return triangle(s.triangle()).vertices[Side::previous_of(s.index())];
+    }
+    /// The same edge seen from the other triangle; invalid on the boundary.
+    Side twin(Side s) const { return triangle(s.triangle()).twins[s.index()]; }
+    bool is_constrained(Side s) const {
+        return ((triangle(s.triangle()).marks >> s.index()) & 1U) != 0;
+    }
+    bool is_locked(Side s) const {
+        return ((triangle(s.triangle()).marks >> (s.index() + 4)) & 1U) != 0;
+    }
+    FacetId facet(TriangleId id) const { return triangle(id).facet; }
+
+    /// True where a swap may not touch the edge whatever the mode: boundary, constrained, locked.
+    bool is_fixed(Side s) const { return !twin(s).valid() || is_constrained(s) || is_locked(s); }
+    /// True where the surface may bend along the edge: its triangles lie in different facets.
+    bool separates_facets(Side s) const {
+        const Side t = twin(s);
+        return !t.valid() || facet(s.triangle()) != facet(t.triangle());
+    }
+
+    /// Box around the vertices. Cost: O(1).
+    const Bounds& bounds() const { return bounds_; }
+
+    /// Plain copies of vertices, triangles and constrained edges, in slot order. Cost: linear.
+    MeshData to_data() const;
+
+    /// Bytes that the mesh holds, growth room that was never touched left out.
+    std::size_t memory_bytes() const;
+
+  private:
+    friend class TinBuilder;
+    friend class Surgery;
+
+    std::vector<Vertex> vertices_;
+    std::vector<Triangle> triangles_;
+    std::uint32_t next_facet_ = 0;
+    Bounds bounds_;
+};
+
+static_assert(sizeof(Tin::Vertex) == 32 && sizeof(Tin::Triangle) == 32);
+
+}  // namespace tinsmith::core

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/types/point.hpp"
+
+namespace tinsmith::core {
+
+/// Everything that the core can refuse, grouped by hundreds. The same word goes over the wire
+/// (see `code_name`); HTTP status numbers are not the core's business.
+enum class ErrorCode {
+    // 100: coordinates
+    CoordinateNotFinite = 101,   ///< NaN or infinite
+    CoordinateOutOfRange = 102,  ///< beyond kCoordinateLimit, or nonzero and below kCoordinateFloor
+    // 200: meshes
+    MeshEmpty = 201,              ///< no triangle
+    VertexIndexOutOfRange = 202,  ///< a triangle names a vertex that is not there
+    TriangleFlat = 203,           ///< zero area in plan, or a vertex named twice
+    EdgeNotManifold = 204,        ///< an edge used by three triangles, or twice in one direction
+    VertexUnused = 205,           ///< no triangle uses the vertex
+    MeshTooLarge = 206,           ///< more vertices or triangles than the ids can count
+    // 300: polygons
+    RingTooShort = 301,  ///< fewer than three distinct positions in a ring
+    LineTooShort = 302,  ///< fewer than two distinct positions in a line
+    ShapeEmpty = 303,    ///< no position at all
+    // 400: integration
+    OutsideMesh = 401,       ///< nothing of the request meets the mesh
+    LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that
+    NotRepresentable = 403,  ///< no mesh of doubles holds the segment within the promised distance
+    // 500: budgets
+    CrossingBudget = 501,   ///< more crossings than allowed
+    TriangleBudget = 502,   ///< more new triangles than allowed
+    Cancelled = 503,        ///< the caller's cancel callback said stop
+    StepBudget = 504,       ///< a loop used up its budget: a defect of ours, never the caller's
+};
+
+/// The word for a code on the wire, in logs and in tests: "RING_TOO_SHORT".
+std::string_view code_name(ErrorCode code);
+
+/// Where in the caller's own request the fault lies. What does not apply is absent.
+struct ErrorPlace {
+    std::optional<std::size_t> vertex;    ///< vertex index of a mesh
+    std::optional<std::size_t> triangle;  ///< triangle index of a mesh
+    std::optional<std::size_t> shape;     ///< index into the request's shapes
+    std::optional<std::size_t> path;      ///< index into the shape's paths
+    std::optional<std::size_t> point;     ///< index into the path's points (segment: its first point)
+    std::optional<Point2> position;       ///< plan position
+};
+
+/// One fault: what is wrong, where, and in `detail` what the caller can do.
+struct Error {
+    ErrorCode code{};
+    std::string detail;
+    ErrorPlace place;
+};
+
+}  // namespace tinsmith::core
