@@ -21,13 +21,12 @@ container=
 server=
 # A store of its own: nothing of the caller's images is touched. vfs and chroot ask nothing of
 # the kernel; they cost disk, since each layer is a whole copy.
-image() {
-    buildah --root "$scratch/store" --runroot "$scratch/run" --storage-driver vfs "$@"
-}
+image=(buildah --root "$scratch/store" --runroot "$scratch/run" --storage-driver vfs)
+# shellcheck disable=SC2317  # reached by the trap
 cleanup() {
     [[ -z $server ]] || kill "$server" 2>/dev/null || true
     [[ -z $server ]] || wait "$server" 2>/dev/null || true
-    [[ -z $container ]] || image rm "$container" >/dev/null || true
+    [[ -z $container ]] || "${image[@]}" rm "$container" >/dev/null || true
     rm -rf "$scratch"
 }
 trap cleanup EXIT
@@ -41,27 +40,27 @@ else
     debootstrap --variant=minbase "$release" "$root" >"$scratch/debootstrap.log" ||
         { tail -n 20 "$scratch/debootstrap.log" >&2; exit 1; }
 fi
-container=$(image from scratch)
-image add --quiet "$container" "$root/" / >/dev/null
-image commit --quiet --rm "$container" "$base" >/dev/null
+container=$("${image[@]}" from scratch)
+"${image[@]}" add --quiet "$container" "$root/" / >/dev/null
+"${image[@]}" commit --quiet --rm "$container" "$base" >/dev/null
 container=
 [[ -n ${BASE_ROOT-} ]] || rm -rf "$root"
 
 echo "Building the image on $base"
-image bud --isolation chroot --format docker --pull-never --build-arg "BASE=$base" \
+"${image[@]}" bud --isolation chroot --format docker --pull-never --build-arg "BASE=$base" \
     --file docker/Dockerfile --tag tinsmith:latest .
 
 mkdir -p build/image
 rm -f build/image/tinsmith.tar
-image push --quiet tinsmith:latest "docker-archive:build/image/tinsmith.tar:tinsmith:latest"
+"${image[@]}" push --quiet tinsmith:latest "docker-archive:build/image/tinsmith.tar:tinsmith:latest"
 echo "build/image/tinsmith.tar: $(du --human-readable build/image/tinsmith.tar | cut -f 1)"
 
-container=$(image from --pull-never tinsmith:latest)
+container=$("${image[@]}" from --pull-never tinsmith:latest)
 # `buildah run` knows neither ENTRYPOINT nor CMD; these are what an engine would start.
-mapfile -t command < <(image inspect --type image tinsmith:latest |
+mapfile -t command < <("${image[@]}" inspect --type image tinsmith:latest |
     jq --raw-output '.Docker.config | (.Entrypoint // []) + (.Cmd // []) | .[]')
 echo "Starting in the image: ${command[*]}"
-image run --isolation chroot --env "TINSMITH_PORT=$port" "$container" -- "${command[@]}" >"$scratch/log" 2>&1 &
+"${image[@]}" run --isolation chroot --env "TINSMITH_PORT=$port" "$container" -- "${command[@]}" >"$scratch/log" 2>&1 &
 server=$!
 for _ in {1..150}; do
     curl --silent --fail "http://127.0.0.1:$port/healthz" >/dev/null && break
@@ -74,7 +73,7 @@ TINSMITH_KEY=${TINSMITH_KEY-$(sed -n 's/^TINSMITH_KEY=//p' "$scratch/log" | head
 export TINSMITH_KEY
 outcome=0
 docker/smoke.sh "http://127.0.0.1:$port" || outcome=1
-image run --isolation chroot --env "TINSMITH_PORT=$port" "$container" -- tinsmith-healthcheck ||
+"${image[@]}" run --isolation chroot --env "TINSMITH_PORT=$port" "$container" -- tinsmith-healthcheck ||
     { echo "the image's health check fails" >&2; outcome=1; }
 ((outcome == 0)) || cat "$scratch/log" >&2
 exit "$outcome"

@@ -21,6 +21,7 @@ fi
 
 scratch=$(mktemp -d "${TMPDIR:-/var/tmp}/tinsmith-root.XXXXXX")
 root=$scratch/root
+# shellcheck disable=SC2317  # reached by the trap
 cleanup() {
     for place in proc dev/shm dev/pts; do
         if mountpoint --quiet "$root/$place"; then umount --lazy "$root/$place"; fi
@@ -54,13 +55,15 @@ git archive HEAD | tar --extract --directory "$root/root/tinsmith"
 outcome=0
 times=()
 in_root() {
-    local title=$1 begin=$SECONDS
+    local title=$1 begin=$SECONDS result
     shift
     printf '\n#### %s, in a bare Debian %s\n' "$title" "$release"
+    result=ok
     env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin \
         ${http_proxy+http_proxy="$http_proxy"} ${https_proxy+https_proxy="$https_proxy"} \
         ${no_proxy+no_proxy="$no_proxy"} ${TINSMITH_JOBS+TINSMITH_JOBS="$TINSMITH_JOBS"} \
-        chroot "$root" bash -c "cd /root/tinsmith && $*" && result=ok || { result=FAILED; outcome=1; }
+        chroot "$root" bash -c "cd /root/tinsmith && $*" || result=FAILED
+    [[ $result == ok ]] || outcome=1
     times+=("$(printf '%-16s %5d s  %s' "$title" $((SECONDS - begin)) "$result")")
 }
 in_root './run.sh demo' './run.sh demo && test -s out.glb && test -s report.json'
