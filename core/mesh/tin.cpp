@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mesh/tin.hpp"
 
+#include <algorithm>
+
 namespace tinsmith::core {
+
+TriangleId Tin::hint(Point2 p) const {
+    const auto cell = [this](double offset, double extent) {
+        const double columns = static_cast<double>(hint_columns_);
+        if (!(extent > 0.0) || !(offset > 0.0)) return std::size_t{0};
+        return static_cast<std::size_t>(std::min(columns - 1.0, offset / extent * columns));
+    };
+    const std::size_t column = cell(p.x - bounds_.min.x, bounds_.max.x - bounds_.min.x);
+    const std::size_t row = cell(p.y - bounds_.min.y, bounds_.max.y - bounds_.min.y);
+    return hints_[row * hint_columns_ + column];
+}
 
 MeshData Tin::to_data() const {
     MeshData data;
@@ -25,7 +38,8 @@ MeshData Tin::to_data() const {
 }
 
 std::size_t Tin::memory_bytes() const {
-    return vertices_.size() * sizeof(Vertex) + triangles_.size() * sizeof(Triangle);
+    return vertices_.size() * sizeof(Vertex) + triangles_.size() * sizeof(Triangle) +
+           hints_.size() * sizeof(TriangleId);
 }
 
 }  // namespace tinsmith::core

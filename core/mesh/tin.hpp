@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/mesh/boundary_index.hpp"
 #include "core/types/ids.hpp"
 #include "core/types/mesh_data.hpp"
 #include "core/types/point.hpp"
@@ -97,6 +98,10 @@ class Tin {
     /// Box around the vertices. Cost: O(1).
     const Bounds& bounds() const { return bounds_; }
 
+    const BoundaryIndex& boundary() const { return boundary_; }
+    /// A triangle somewhere near the position, to start a walk at. Cost: O(1).
+    TriangleId hint(Point2 p) const;
+
     /// Plain copies of vertices, triangles and constrained edges, in slot order. Cost: linear.
     MeshData to_data() const;
 
@@ -111,6 +116,9 @@ class Tin {
     std::vector<Triangle> triangles_;
     std::uint32_t next_facet_ = 0;
     Bounds bounds_;
+    BoundaryIndex boundary_;
+    std::vector<TriangleId> hints_;  ///< square grid over the bounds, row by row
+    std::size_t hint_columns_ = 0;
 };
 
 static_assert(sizeof(Tin::Vertex) == 32 && sizeof(Tin::Triangle) == 32);

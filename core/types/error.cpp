@@ -12,6 +12,8 @@ std::string_view code_name(ErrorCode code) {
         case ErrorCode::TriangleFlat: return "TRIANGLE_FLAT";
         case ErrorCode::EdgeNotManifold: return "EDGE_NOT_MANIFOLD";
         case ErrorCode::VertexUnused: return "VERTEX_UNUSED";
+        case ErrorCode::TriangleClockwise: return "TRIANGLE_CLOCKWISE";
+        case ErrorCode::VertexFolded: return "VERTEX_FOLDED";
         case ErrorCode::MeshTooLarge: return "MESH_TOO_LARGE";
         case ErrorCode::RingTooShort: return "RING_TOO_SHORT";
         case ErrorCode::LineTooShort: return "LINE_TOO_SHORT";

@@ -22,7 +22,9 @@ enum class ErrorCode {
     TriangleFlat = 203,           ///< zero area in plan, or a vertex named twice
     EdgeNotManifold = 204,        ///< an edge used by three triangles, or twice in one direction
     VertexUnused = 205,           ///< no triangle uses the vertex
-    MeshTooLarge = 206,           ///< more vertices or triangles than the ids can count
+    TriangleClockwise = 206,      ///< clockwise seen from above
+    VertexFolded = 207,           ///< the triangles around a vertex overlap
+    MeshTooLarge = 208,           ///< more vertices or triangles than the ids can count
     // 300: polygons
     RingTooShort = 301,  ///< fewer than three distinct positions in a ring
     LineTooShort = 302,  ///< fewer than two distinct positions in a line

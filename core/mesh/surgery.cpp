@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mesh/surgery.hpp"
+
+#include <utility>
+
+namespace tinsmith::core {
+
+namespace {
+
+constexpr auto next_of = Side::next_of;
+constexpr auto previous_of = Side::previous_of;
+
+/// The marks of side `from` alone, moved to side `to`.
+std::uint32_t side_marks(std::uint32_t marks, unsigned from, unsigned to) {
+    return ((marks >> from) & Surgery::kSideBits) << to;
+}
+
+void set_side_marks(std::uint32_t& marks, unsigned side, std::uint32_t moved) {
+    marks = (marks & ~(Surgery::kSideBits << side)) | moved;
+}
+
+}  // namespace
+
+Surgery::Surgery(Tin& tin) : tin_(tin) {
+    record_.vertex_count = tin.vertices_.size();
+    record_.triangle_count = tin.triangles_.size();
+    record_.next_facet = tin.next_facet_;
+}
+
+Surgery::~Surgery() {
+    if (open_) roll_back();
+}
+
+Tin::Triangle& Surgery::edit(TriangleId t) {
+    Tin::Triangle& triangle = tin_.triangles_[t.index()];
+    if (t.index() < record_.triangle_count && (triangle.marks & kLoggedBit) == 0) {
+        record_.triangles.emplace_back(t, triangle);
+        triangle.marks |= kLoggedBit;
+    }
+    return triangle;
+}
+
+Tin::Vertex& Surgery::edit(VertexId v) {
+    Tin::Vertex& vertex = tin_.vertices_[v.index()];
+    if (v.index() < record_.vertex_count) record_.vertices.emplace_back(v, vertex);
+    return vertex;
+}
+
+void Surgery::join(Side a, Side b) {
+    if (a.valid()) edit(a.triangle()).twins[a.index()] = b;
+    if (b.valid()) edit(b.triangle()).twins[b.index()] = a;
+}
+
+VertexId Surgery::append(Point3 p, TriangleId t) {
+    const VertexId id{static_cast<std::uint32_t>(tin_.vertices_.size())};
+    tin_.vertices_.push_back({p.x, p.y, p.z, t});
+    return id;
+}
+
+TriangleId Surgery::append(const Tin::Triangle& t) {
+    const TriangleId id{static_cast<std::uint32_t>(tin_.triangles_.size())};
+    tin_.triangles_.push_back(t);
+    tin_.triangles_.back().marks &= ~kLoggedBit;
+    return id;
+}
+
+//            v2                        T  keeps its slot: (v0, v1, p)
+//           /|\                        A  new:            (v1, v2, p)
+//          / | \                       B  new:            (v2, v0, p)
+//      n2 /  |  \ n1
+//        / B p A \                     n0, n1, n2: the sides across, unchanged
+//       /  /   \  \                    new edges: p-v0, p-v1, p-v2, unmarked
+//      / /   T   \ \                   .
+//     v0 ---------- v1
+//            n0
+VertexId Surgery::split_triangle(TriangleId t, Point3 point) {
+    Tin::Triangle& T = edit(t);
+    const auto [v0, v1, v2] = T.vertices;
+    const Side n1 = T.twins[1];
+    const Side n2 = T.twins[2];
+    const std::uint32_t marks = T.marks;
+    const FacetId facet = T.facet;
+
+    const VertexId p = append(point, t);
+    T.vertices[2] = p;
+    set_side_marks(T.marks, 1, 0);
+    set_side_marks(T.marks, 2, 0);
+    const TriangleId A = append({{v1, v2, p}, {}, facet, side_marks(marks, 1, 0)});
+    const TriangleId B = append({{v2, v0, p}, {}, facet, side_marks(marks, 2, 0)});
+
+    join({A, 0}, n1);
+    join({B, 0}, n2);
+    join({t, 1}, {A, 2});
+    join({A, 1}, {B, 2});
+    join({B, 1}, {t, 2});
+    if (tin_.vertex(v2).triangle == t) edit(v2).triangle = A;
+    return p;
+}
+
+//            c                         T (a, b, c) keeps its slot: (a, p, c)
+//           /|\                        U (b, a, d) keeps its slot: (b, p, d)
+//          / | \                       N new: (p, b, c)
+//         /  |  \                      M new: (p, a, d)
+//        / T | N \                     .
+//       a ---p--- b    s = a -> b      both halves keep the marks of a-b;
+//        \ M | U /                     new edges p-c, p-d unmarked
+//         \  |  /                      .
+//          \ | /                       on the boundary there is no U and no M
+//           \|/
+//            d
+VertexId Surgery::split_edge(Side s, Point3 point) {
+    const TriangleId t = s.triangle();
+    const unsigned i = s.index();
+    const unsigned i1 = next_of(i);
+    const Side across = tin_.twin(s);
+
+    Tin::Triangle& T = edit(t);
+    const VertexId a = T.vertices[i];
+    const VertexId b = T.vertices[i1];
+    const VertexId c = T.vertices[previous_of(i)];
+    const std::uint32_t marks = T.marks;
+    const FacetId facet = T.facet;
+    const Side outer_bc = T.twins[i1];
+
+    const VertexId p = append(point, t);
+    T.vertices[i1] = p;
+    set_side_marks(T.marks, i1, 0);
+    const TriangleId N = append(
+        {{p, b, c}, {}, facet, side_marks(marks, i, 0) | side_marks(marks, i1, 1)});
+    join({N, 1}, outer_bc);
+    join({t, i1}, {N, 2});
+    if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
+
+    if (!across.valid()) {
+        join({t, i}, {});
+        join({N, 0}, {});
+        log_boundary(a, p);
+        log_boundary(p, b);
+        return p;
+    }
+
+    const TriangleId u = across.triangle();
+    const unsigned j = across.index();
+    const unsigned j1 = next_of(j);
+    Tin::Triangle& U = edit(u);
+    const VertexId d = U.vertices[previous_of(j)];
+    const std::uint32_t marks_u = U.marks;
+    const FacetId facet_u = U.facet;
+    const Side outer_ad = U.twins[j1];
+
+    U.vertices[j1] = p;
+    set_side_marks(U.marks, j1, 0);
+    const TriangleId M = append(
+        {{p, a, d}, {}, facet_u, side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1)});
+    join({M, 1}, outer_ad);
+    join({u, j1}, {M, 2});
+    join({t, i}, {M, 0});
+    join({u, j}, {N, 0});
+    if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
+    return p;
+}
+
+//          c                   c
+//         / \                 /|\          T (a, b, c) becomes (a, d, c)
+//        /   \               / | \         U (b, a, d) becomes (b, c, d)
+//       /  T  \             /  |  \        .
+//      a ----- b    ==>    a T | U b       s = a -> b
+//       \  U  /             \  |  /        the outer edges a-d and b-c change owner
+//        \   /               \ | /         and keep their marks; d-c is unmarked
+//         \ /                 \|/
+//          d                   d
+Side Surgery::swap_edge(Side s) {
+    const Side across = tin_.twin(s);
+    const TriangleId t = s.triangle();
+    const TriangleId u = across.triangle();
+    const unsigned i = s.index();
+    const unsigned i1 = next_of(i);
+    const unsigned j = across.index();
+    const unsigned j1 = next_of(j);
+
+    Tin::Triangle& T = edit(t);
+    Tin::Triangle& U = edit(u);
+    const VertexId a = T.vertices[i];
+    const VertexId b = T.vertices[i1];
+    const VertexId c = T.vertices[previous_of(i)];
+    const VertexId d = U.vertices[previous_of(j)];
+    const Side outer_bc = T.twins[i1];
+    const Side outer_ad = U.twins[j1];
+    const std::uint32_t marks_bc = side_marks(T.marks, i1, j);
+    const std::uint32_t marks_ad = side_marks(U.marks, j1, i);
+
+    T.vertices[i1] = d;
+    U.vertices[j1] = c;
+    set_side_marks(T.marks, i, marks_ad);
+    set_side_marks(T.marks, i1, 0);
+    set_side_marks(U.marks, j, marks_bc);
+    set_side_marks(U.marks, j1, 0);
+    join({t, i}, outer_ad);
+    join({u, j}, outer_bc);
+    join({t, i1}, {u, j1});
+    if (tin_.vertex(b).triangle == t) edit(b).triangle = u;
+    if (tin_.vertex(a).triangle == u) edit(a).triangle = t;
+    return {t, i1};
+}
+
+//          c                   c
+//         / \                 /|\          the needle T (a, b, c) leaves its facet:
+//        / T \               / | \         both triangles lie in U's facet afterwards;
+//      a ----- b    ==>    a T | U b       a-c and c-b, now the border between the
+//       \  U  /             \  |  /        facets, take the marks of a-b as well
+//        \   /               \ | /
+//          d                   d
+void Surgery::absorb_apex(Side s) {
+    const Side across = tin_.twin(s);
+    const TriangleId t = s.triangle();
+    const TriangleId u = across.triangle();
+    const unsigned i = s.index();
+    const std::uint32_t marks = tin_.triangle(t).marks;
+    const FacetId facet = tin_.facet(u);
+
+    swap_edge(s);  // T (a, d, c): c -> a is side i + 2; U (b, c, d): b -> c is side j
+    edit(t).facet = facet;
+    const auto add_marks = [this, marks, i](Side side) {
+        edit(side.triangle()).marks |= side_marks(marks, i, side.index());
+        const Side other = tin_.twin(side);
+        if (other.valid()) edit(other.triangle()).marks |= side_marks(marks, i, other.index());
+    };
+    add_marks({t, previous_of(i)});
+    add_marks({u, across.index()});
+}
+
+void Surgery::mark_constrained(Side s) {
+    if (tin_.is_constrained(s)) return;
+    const auto mark = [this](Side side) {
+        if (!side.valid()) return;
+        edit(side.triangle()).marks |= (1U | (1U << kFreshShift)) << side.index();
+    };
+    mark(s);
+    mark(tin_.twin(s));
+}
+
+bool Surgery::is_fresh(Side s) const {
+    return ((tin_.triangle(s.triangle()).marks >> (s.index() + kFreshShift)) & 1U) != 0;
+}
+
+void Surgery::log_boundary(VertexId v, VertexId next) {
+    tin_.boundary_.add(v, tin_.plan(v), tin_.plan(next), &record_.boundary_cells);
+}
+
+UndoRecord Surgery::commit() {
+    for (const auto& [id, old] : record_.triangles)
+        tin_.triangles_[id.index()].marks &= ~kTransientBits;
+    for (std::size_t i = record_.triangle_count; i < tin_.triangles_.size(); ++i)
+        tin_.triangles_[i].marks &= ~kTransientBits;
+    open_ = false;
+    return std::move(record_);
+}
+
+void Surgery::roll_back() {
+    undo(tin_, record_);
+    open_ = false;
+}
+
+void Surgery::undo(Tin& tin, const UndoRecord& record) {
+    tin.boundary_.remove_newest(record.boundary_cells);
+    tin.vertices_.resize(record.vertex_count);
+    tin.triangles_.resize(record.triangle_count);
+    for (const auto& [id, old] : record.triangles) tin.triangles_[id.index()] = old;
+    for (auto entry = record.vertices.rbegin(); entry != record.vertices.rend(); ++entry)
+        tin.vertices_[entry->first.index()] = entry->second;
+    tin.next_facet_ = record.next_facet;
+}
+
+}  // namespace tinsmith::core

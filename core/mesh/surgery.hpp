@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/mesh/tin.hpp"
+#include "core/mesh/undo_record.hpp"
+
+namespace tinsmith::core {
+
+/// The only code that changes a TIN's triangles. Each change is drawn where it is defined, keeps
+/// laws 2-4 of `Tin`, and is recorded so that the whole operation can be taken back.
+/// Law 1 (strictly counter-clockwise) is the caller's to check before the change.
+/// A Surgery lives for one operation on one mesh; end it with `commit` or `roll_back`.
+class Surgery {
+  public:
+    explicit Surgery(Tin& tin);
+    Surgery(const Surgery&) = delete;
+    Surgery& operator=(const Surgery&) = delete;
+    /// Rolls back unless committed.
+    ~Surgery();
+
+    const Tin& tin() const { return tin_; }
+    const UndoRecord& record() const { return record_; }
+
+    /// Splits a triangle in three at a point strictly inside. New slots: 1 vertex, 2 triangles.
+    VertexId split_triangle(TriangleId t, Point3 p);
+    /// Splits an edge, and the triangle or triangles beside it, at a point strictly between its
+    /// ends. Both halves keep every mark. New slots: 1 vertex, 2 triangles (boundary: 1).
+    VertexId split_edge(Side s, Point3 p);
+    /// Exchanges the diagonal of the two triangles beside the edge. Requires: not a boundary edge.
+    /// The triangle of `s` and its twin keep their slots. Returns a side of the new edge, whose
+    /// triangle holds the old origin of `s`.
+    Side swap_edge(Side s);
+    /// Takes the apex of `s` onto the edge: the needle between them goes to the facet across.
+    /// The edge a-b becomes a-apex-b with all its marks. Requires: not a boundary edge.
+    void absorb_apex(Side s);
+
+    /// Marks the edge on both sides as a constraint, and as fresh when it was none before.
+    void mark_constrained(Side s);
+    /// True where the constraint was made by this operation and not before.
+    bool is_fresh(Side s) const;
+
+    /// Keeps the changes; what is returned can take them back (`undo`).
+    UndoRecord commit();
+    /// Takes all changes back, bit for bit.
+    void roll_back();
+    /// Takes a committed operation back. Requires: it is the newest on this mesh.
+    static void undo(Tin& tin, const UndoRecord& record);
+
+    /// Bits of `Tin::Triangle::marks` that live only while an operation runs.
+    static constexpr std::uint32_t kLoggedBit = 1U << 31;
+    static constexpr unsigned kFreshShift = 8;
+    static constexpr std::uint32_t kTransientBits = kLoggedBit | (7U << kFreshShift);
+    /// The bits of side 0 in `marks`; side i has them shifted left by i.
+    static constexpr std::uint32_t kSideBits = 1U | (1U << 4) | (1U << kFreshShift);
+
+  private:
+    Tin::Triangle& edit(TriangleId t);
+    Tin::Vertex& edit(VertexId v);
+    /// Makes `a` and `b` twins; either may be invalid.
+    void join(Side a, Side b);
+    VertexId append(Point3 p, TriangleId t);
+    TriangleId append(const Tin::Triangle& t);
+    void log_boundary(VertexId v, VertexId next);
+
+    Tin& tin_;
+    UndoRecord record_;
+    bool open_ = true;
+};
+
+}  // namespace tinsmith::core

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mesh/walk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/predicates/orientation.hpp"
+
+namespace tinsmith::core {
+
+namespace {
+
+using enum Orientation;
+
+/// Position relative to a closed triangle, by exact predicates; Outside where it is not in it.
+Location locate_in(const Tin& tin, TriangleId t, Point2 p) {
+    const auto& vertices = tin.triangle(t).vertices;
+    unsigned on_side = 3;
+    for (unsigned i = 0; i < 3; ++i) {
+        if (tin.plan(vertices[i]) == p) return {Location::Kind::OnVertex, {}, vertices[i]};
+        switch (orientation(tin.plan(vertices[i]), tin.plan(vertices[Side::next_of(i)]), p)) {
+            case Clockwise: return {};
+            case Collinear: on_side = i; break;
+            case CounterClockwise: break;
+        }
+    }
+    if (on_side == 3) return {Location::Kind::InTriangle, {t, 0}, {}};
+    const Side side(t, on_side);
+    const Side twin = tin.twin(side);
+    return {Location::Kind::OnEdge, twin.valid() ? std::min(side, twin) : side, {}};
+}
+
+/// The vertex of the same position with the lowest id, where fans touch in one point: so that the
+/// answer does not depend on the way. Such vertices are on the boundary, each starting an edge.
+Location canonical(const Tin& tin, Location found) {
+    if (found.kind != Location::Kind::OnVertex) return found;
+    if (!boundary_side_from(tin, found.vertex).valid()) return found;
+    const Point2 p = tin.plan(found.vertex);
+    for (const VertexId v : tin.boundary().near(p, p))
+        if (v.index() < tin.vertex_count() && v < found.vertex && tin.plan(v) == p) found.vertex = v;
+    return found;
+}
+
+/// The straight walk from a vertex to p. Gives up, with `arrived` false, where the line leaves
+/// the mesh. Ends because every step is strictly nearer to p along one line.
+struct StraightWalk {
+    bool arrived = false;
+    Location location;
+};
+
+StraightWalk walk_straight(const Tin& tin, VertexId v, Point2 p) {
+    while (true) {
+        if (tin.plan(v) == p) return {true, {Location::Kind::OnVertex, {}, v}};
+        const Point2 from = tin.plan(v);
+        const Departure departure = leave(tin, v, p, side_from(tin, v));
+        if (departure.kind == Departure::Kind::Outside) return {};
+        if (departure.kind == Departure::Kind::AlongEdge) {
+            const VertexId next = departure.along(tin, v);
+            // p lies on the edge unless it is at or past its far end.
+            if (!is_ahead(tin.plan(next), from, p))
+                v = next;
+            else
+                return {true, locate_in(tin, departure.side.triangle(), p)};
+            continue;
+        }
+        // Through triangles, until p is in one or the line meets a vertex.
+        Side exit = departure.side;
+        VertexId met;
+        while (!met.valid()) {
+            const Point2 right = tin.plan(tin.origin(exit));
+            const Point2 left = tin.plan(tin.destination(exit));
+            if (orientation(right, left, p) == Clockwise) {
+                const Side entry = tin.twin(exit);
+                if (!entry.valid()) return {};
+                const VertexId apex = tin.apex(entry);
+                switch (orientation(from, p, tin.plan(apex))) {
+                    case Collinear:
+                        if (is_ahead(tin.plan(apex), from, p))
+                            return {true, locate_in(tin, entry.triangle(), p)};
+                        met = apex;
+                        break;
+                    // entry runs left -> right; next is right -> apex, previous apex -> left.
+                    case CounterClockwise: exit = entry.next(); break;
+                    case Clockwise: exit = entry.previous(); break;
+                }
+                continue;
+            }
+            return {true, locate_in(tin, exit.triangle(), p)};
+        }
+        v = met;
+    }
+}
+
+/// Whether p is inside, by the boundary edges that the ray to +x crosses, half-open in y so that
+/// no vertex counts twice; then walks back along the ray from the nearest of them.
+Location locate_from_boundary(const Tin& tin, Point2 p) {
+    const Point2 far{std::max(tin.bounds().max.x, p.x), p.y};
+    struct Crossing {
+        double x;
+        Side side;
+    };
+    std::vector<Crossing> crossings;
+    for (const VertexId v : tin.boundary().near(p, far)) {
+        if (v.index() >= tin.vertex_count()) continue;
+        const Side side = boundary_side_from(tin, v);
+        if (!side.valid()) continue;
+        const Point2 a = tin.plan(v);
+        const Point2 b = tin.plan(tin.destination(side));
+        const Location here = locate_in(tin, side.triangle(), p);
+        if (here.kind != Location::Kind::Outside) return here;
+        if ((a.y > p.y) == (b.y > p.y)) continue;
+        const Orientation turn = orientation(a, b, p);
+        if ((b.y > a.y) != (turn == CounterClockwise)) continue;  // crosses to the west of p
+        crossings.push_back({a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y)), side});
+    }
+    if (crossings.size() % 2 == 0) return {};
+    std::sort(crossings.begin(), crossings.end(), [](const Crossing& l, const Crossing& r) {
+        return l.x != r.x ? l.x < r.x : l.side < r.side;
+    });
+    // Rounding can misplace crossings within a few ulps of each other, so a walk that runs out of
+    // the mesh leaves its turn to the next.
+    for (const Crossing& crossing : crossings) {
+        Side exit = crossing.side;
+        while (exit.valid()) {
+            const Location here = locate_in(tin, exit.triangle(), p);
+            if (here.kind != Location::Kind::Outside) return here;
+            // Go on through the other side that the ray crosses: vertices at its height are below.
+            const bool apex_above = tin.plan(tin.apex(exit)).y > p.y;
+            const bool origin_above = tin.plan(tin.origin(exit)).y > p.y;
+            exit = tin.twin(apex_above == origin_above ? exit.next() : exit.previous());
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Side side_from(const Tin& tin, TriangleId t, VertexId v) {
+    const auto& vertices = tin.triangle(t).vertices;
+    return {t, vertices[0] == v ? 0U : vertices[1] == v ? 1U : 2U};
+}
+
+Side find_edge(const Tin& tin, VertexId v, VertexId w) {
+    const Side start = side_from(tin, v);
+    Side s = start;
+    do {  // counter-clockwise
+        if (tin.destination(s) == w) return s;
+        if (tin.apex(s) == w) return s.previous();
+        s = tin.twin(s.previous());
+    } while (s.valid() && s != start);
+    if (s.valid()) return {};
+    s = tin.twin(start);  // the rest of an open fan, clockwise
+    while (s.valid()) {
+        s = s.next();
+        if (tin.destination(s) == w) return s;
+        s = tin.twin(s);
+    }
+    return {};
+}
+
+Side boundary_side_from(const Tin& tin, VertexId v) {
+    const Side start = side_from(tin, v);
+    Side s = start;
+    while (true) {  // clockwise
+        const Side twin = tin.twin(s);
+        if (!twin.valid()) return s;
+        s = twin.next();
+        if (s == start) return {};
+    }
+}
+
+Departure leave(const Tin& tin, VertexId v, Point2 target, Side start) {
+    const Point2 from = tin.plan(v);
+    const auto is_on_way = [&](Orientation turn, VertexId w) {
+        return turn == Collinear && is_ahead(from, target, tin.plan(w));
+    };
+    Side s = start;
+    const Orientation first = orientation(from, target, tin.plan(tin.destination(s)));
+    if (is_on_way(first, tin.destination(s))) return {Departure::Kind::AlongEdge, s};
+    Orientation right = first;
+    do {  // counter-clockwise
+        const VertexId apex = tin.apex(s);
+        const Orientation left = orientation(from, target, tin.plan(apex));
+        if (is_on_way(left, apex)) return {Departure::Kind::AlongEdge, s.previous()};
+        if (right == Clockwise && left == CounterClockwise)
+            return {Departure::Kind::ThroughEdge, s.next()};
+        right = left;
+        s = tin.twin(s.previous());
+    } while (s.valid() && s != start);
+    if (s.valid()) return {Departure::Kind::Outside, {}};
+
+    Orientation left = first;  // the rest of an open fan, clockwise
+    for (s = tin.twin(start); s.valid(); s = tin.twin(s)) {
+        s = s.next();
+        const VertexId w = tin.destination(s);
+        right = orientation(from, target, tin.plan(w));
+        if (is_on_way(right, w)) return {Departure::Kind::AlongEdge, s};
+        if (right == Clockwise && left == CounterClockwise)
+            return {Departure::Kind::ThroughEdge, s.next()};
+        left = right;
+    }
+    return {Departure::Kind::Outside, {}};
+}
+
+Location locate(const Tin& tin, Point2 p, TriangleId seed) {
+    const Bounds& box = tin.bounds();
+    // Splits on the boundary may round past the box by an ulp; those are found from the boundary.
+    if (p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y) {
+        const StraightWalk walk = walk_straight(tin, tin.triangle(seed).vertices[0], p);
+        if (walk.arrived) return canonical(tin, walk.location);
+    }
+    return canonical(tin, locate_from_boundary(tin, p));
+}
+
+}  // namespace tinsmith::core
