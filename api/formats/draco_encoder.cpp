@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/draco_encoder.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <draco/compression/encode.h>
+#include <draco/mesh/mesh.h>
+
+namespace tinsmith::api {
+namespace {
+
+draco::PointAttribute* add_vectors(draco::Mesh& mesh, draco::GeometryAttribute::Type type,
+                                   std::size_t count) {
+    draco::GeometryAttribute attribute;
+    attribute.Init(type, nullptr, 3, draco::DT_FLOAT32, false, 3 * sizeof(float), 0);
+    // Identity mapping: vertex i has value i, so that equal positions stay two vertices and a
+    // collapsed triangle is kept, as its neighbours need it.
+    const int id = mesh.AddAttribute(attribute, true, static_cast<std::uint32_t>(count));
+    return mesh.attribute(id);
+}
+
+void set_positions(draco::PointAttribute& attribute, const DracoPiece& piece, float step) {
+    auto* out = reinterpret_cast<float*>(attribute.buffer()->data());
+    for (const GridPoint& point : piece.positions) {
+        for (const std::int32_t n : point)
+            *out++ = static_cast<float>(n) * step;
+    }
+}
+
+void set_normals(draco::PointAttribute& attribute, const DracoPiece& piece) {
+    auto* out = reinterpret_cast<float*>(attribute.buffer()->data());
+    for (const std::array<float, 3>& normal : piece.normals)
+        out = std::copy(normal.begin(), normal.end(), out);
+}
+
+void set_triangles(draco::Mesh& mesh, const DracoPiece& piece) {
+    mesh.SetNumFaces(piece.triangles.size());
+    for (std::uint32_t i = 0; i < piece.triangles.size(); ++i) {
+        const auto& [a, b, c] = piece.triangles[i];
+        draco::Mesh::Face face;
+        face[0] = draco::PointIndex(a);
+        face[1] = draco::PointIndex(b);
+        face[2] = draco::PointIndex(c);
+        mesh.SetFace(draco::FaceIndex(i), face);
+    }
+}
+
+/// The explicit quantization whose every product and sum is exact in float32: the origin is a
+/// corner of the grid, and range / (2^bits - 1) is the step itself.
+struct Quantization {
+    std::array<float, 3> origin{};
+    float range = 0;
+    unsigned bits = 1;
+};
+
+Quantization quantization_for(const DracoPiece& piece, float step) {
+    Box<std::int32_t> box;
+    for (const GridPoint& point : piece.positions)
+        box.add(point);
+    std::int32_t extent = 1;
+    Quantization quantization;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        extent = std::max(extent, box.high[axis] - box.low[axis]);
+        quantization.origin[axis] = static_cast<float>(box.low[axis]) * step;
+    }
+    quantization.bits = static_cast<unsigned>(std::bit_width(static_cast<std::uint32_t>(extent)));
+    quantization.range = static_cast<float>((std::int64_t{1} << quantization.bits) - 1) * step;
+    return quantization;
+}
+
+}  // namespace
+
+std::variant<DracoBytes, EncodeError> encode_draco(const DracoPiece& piece) {
+    const float step = std::ldexp(1.0F, piece.exponent);
+    const Quantization quantization = quantization_for(piece, step);
+    if (quantization.bits > kDracoBits)
+        return EncodeError{EncodeFault::Codec, "the piece is too wide for exact Draco positions"};
+
+    draco::Mesh mesh;
+    mesh.set_num_points(static_cast<std::uint32_t>(piece.positions.size()));
+    draco::PointAttribute* positions =
+        add_vectors(mesh, draco::GeometryAttribute::POSITION, piece.positions.size());
+    set_positions(*positions, piece, step);
+    DracoBytes result;
+    result.position_id = static_cast<int>(positions->unique_id());
+    if (!piece.normals.empty()) {
+        draco::PointAttribute* normals =
+            add_vectors(mesh, draco::GeometryAttribute::NORMAL, piece.normals.size());
+        set_normals(*normals, piece);
+        result.normal_id = static_cast<int>(normals->unique_id());
+    }
+    set_triangles(mesh, piece);
+
+    draco::Encoder encoder;
+    encoder.SetSpeedOptions(kDracoSpeed, kDracoSpeed);
+    encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
+    encoder.SetAttributeExplicitQuantization(draco::GeometryAttribute::POSITION,
+                                             static_cast<int>(quantization.bits), 3,
+                                             quantization.origin.data(), quantization.range);
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, kDracoNormalBits);
+    encoder.SetTrackEncodedProperties(true);  // or num_encoded_points() stays 0
+    draco::EncoderBuffer buffer;
+    const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
+    if (!status.ok()) return EncodeError{EncodeFault::Codec, "Draco: " + status.error_msg_string()};
+    result.bytes.assign(buffer.data(), buffer.size());
+    result.position_bits = quantization.bits;
+    result.points = encoder.num_encoded_points();
+    result.triangles = encoder.num_encoded_faces();
+    return result;
+}
+
+}  // namespace tinsmith::api

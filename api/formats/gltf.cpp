@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/gltf.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "api/formats/gltf_scene.hpp"
+#include "api/formats/gltf_writer.hpp"
+#include "api/formats/quantization.hpp"
+#include "core/predicates/orientation.hpp"
+#include "core/types/range.hpp"
+
+namespace tinsmith::api {
+namespace {
+
+/// Draco numbers corners with 32 signed bits.
+constexpr std::size_t kMostTriangles = std::numeric_limits<std::int32_t>::max() / 3;
+/// 2^32 - 1 is no index in glTF.
+constexpr std::size_t kMostVertices = std::numeric_limits<std::uint32_t>::max() - 1;
+/// A thousand kilometres: keeps every length in metres well inside float32's range.
+constexpr double kLargestUnit = 1e6;
+
+std::string as_text(double number) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+    return {text.data(), end};
+}
+
+bool usable(double coordinate) {
+    return std::fabs(coordinate) <= core::kCoordinateLimit;
+}
+
+template <std::size_t N>
+bool names_vertices(const std::array<std::uint32_t, N>& corners, std::size_t vertices) {
+    for (std::size_t i = 0; i < N; ++i) {
+        if (corners[i] >= vertices || corners[i] == corners[(i + 1) % N]) return false;
+    }
+    return true;
+}
+
+EncodeError bad_mesh(const char* what, std::size_t index) {
+    return {EncodeFault::BadMesh, what + std::to_string(index)};
+}
+
+/// Draco's encoder is not hardened: what it takes for granted is looked at here.
+std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOptions& options) {
+    if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance))
+        return EncodeError{EncodeFault::BadOption, "tolerance must be a positive number of metres"};
+    if (!(options.unit_to_metre > 0.0 && options.unit_to_metre <= kLargestUnit))
+        return EncodeError{EncodeFault::BadOption, "the unit must be a positive length"};
+    if (mesh.triangles.empty())
+        return EncodeError{EncodeFault::BadMesh, "the mesh has no triangle"};
+    if (mesh.triangles.size() > kMostTriangles || mesh.vertices.size() > kMostVertices)
+        return EncodeError{EncodeFault::TooLarge, "the mesh is too large; ask for a smaller bbox"};
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const core::Point3& v = mesh.vertices[i];
+        if (!usable(v.x) || !usable(v.y) || !usable(v.z))
+            return bad_mesh("a coordinate that is not finite or too large at vertex ", i);
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (!names_vertices(mesh.triangles[i], mesh.vertices.size()))
+            return bad_mesh("a wrong vertex index in triangle ", i);
+    }
+    for (std::size_t i = 0; i < mesh.constraints.size(); ++i) {
+        if (!names_vertices(mesh.constraints[i], mesh.vertices.size()))
+            return bad_mesh("a wrong vertex index in constraint ", i);
+    }
+    return std::nullopt;
+}
+
+std::vector<std::pair<std::string, GlbExtra>> extras_of(const core::MeshData& mesh,
+                                                        const GltfOptions& options,
+                                                        const GltfResult& result) {
+    return {{"origin", result.origin},
+            {"up", options.up == UpAxis::Y ? std::string("y") : std::string("z")},
+            {"unit_to_metre", options.unit_to_metre},
+            {"tolerance", options.tolerance},
+            {"step", result.step},
+            {"position_bits", std::size_t{result.bits}},
+            {"max_error", result.max_error},
+            {"axis_error", result.axis_error},
+            {"vertices", mesh.vertices.size()},
+            {"triangles", mesh.triangles.size()},
+            {"constraints", mesh.constraints.size()},
+            {"primitives", result.primitives},
+            {"flipped", result.flipped},
+            {"collapsed", result.collapsed}};
+}
+
+/// What Draco drops or what rounds too far is an error here, not a surprise for a client.
+std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const GltfOptions& options,
+                                            const std::vector<GlbNode>& nodes, GltfResult& result) {
+    std::size_t triangles = 0;
+    result.nodes = nodes.size();
+    for (const GlbNode& node : nodes) {
+        for (const GlbPrimitive& primitive : node.primitives) {
+            if (primitive.mode != GlbMode::Triangles) continue;
+            ++result.primitives;
+            triangles +=
+                primitive.draco ? primitive.draco->triangles : primitive.indices.size() / 3;
+            if (primitive.draco)
+                result.bits = std::max(result.bits, primitive.draco->position_bits);
+        }
+    }
+    if (triangles != mesh.triangles.size())
+        return EncodeError{EncodeFault::Codec, "Draco kept " + std::to_string(triangles) + " of " +
+                                                   std::to_string(mesh.triangles.size()) +
+                                                   " triangles"};
+    result.max_error = *std::max_element(result.axis_error.begin(), result.axis_error.end());
+    if (result.max_error > options.tolerance)
+        return EncodeError{EncodeFault::ToleranceTooFine,
+                           "positions of this extent are off by up to " +
+                               as_text(result.max_error) + " m; ask for tolerance=" +
+                               as_text(result.max_error) + " or coarser, or for a smaller bbox"};
+    return std::nullopt;
+}
+
+std::variant<std::vector<GlbNode>, EncodeError> compressed(const SceneInput& input,
+                                                           const Box<double>& bounds,
+                                                           GltfResult& result) {
+    const GltfOptions& options = input.options;
+    const std::optional<PositionGrid> grid = grid_for(bounds, options.tolerance);
+    if (!grid)
+        return EncodeError{EncodeFault::ToleranceTooFine,
+                           "the finest tolerance for a mesh of this extent is " +
+                               as_text(finest_tolerance(bounds)) + " m"};
+    const std::vector<GridPoint> points = quantize(input.mesh, options.unit_to_metre, *grid);
+    const PlanCheck check = check_plan(points, input.mesh.triangles);
+    result.origin = grid->origin;
+    result.step = grid->step();
+    result.axis_error = largest_error(input.mesh, options.unit_to_metre, *grid, points);
+    result.flipped = check.flipped;
+    result.collapsed = check.collapsed;
+    return draco_nodes(input, *grid, points);
+}
+
+std::vector<GlbNode> plain(const SceneInput& input, const Box<double>& bounds, GltfResult& result) {
+    result.origin = whole_metre_middle(bounds);
+    const double unit = input.options.unit_to_metre;
+    std::vector<std::array<float, 3>> positions;
+    positions.reserve(input.mesh.vertices.size());
+    for (const core::Point3& vertex : input.mesh.vertices) {
+        const std::array<double, 3> metres{vertex.x * unit, vertex.y * unit, vertex.z * unit};
+        std::array<float, 3>& position = positions.emplace_back();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            position[axis] = static_cast<float>(metres[axis] - result.origin[axis]);
+            const double error = result.origin[axis] + double{position[axis]} - metres[axis];
+            result.axis_error[axis] = std::max(result.axis_error[axis], std::fabs(error));
+        }
+    }
+    const auto plan = [&](std::uint32_t vertex) {
+        return core::Point2{double{positions[vertex][0]}, double{positions[vertex][1]}};
+    };
+    for (const auto& [a, b, c] : input.mesh.triangles) {
+        const core::Orientation side = core::orientation(plan(a), plan(b), plan(c));
+        if (side == core::Orientation::Clockwise) ++result.flipped;
+        if (side == core::Orientation::Collinear) ++result.collapsed;
+    }
+    std::vector<GlbNode> nodes;
+    nodes.push_back(plain_node(input, result.origin, positions));
+    return nodes;
+}
+
+}  // namespace
+
+std::variant<GltfResult, EncodeError> write_glb(const core::MeshData& mesh,
+                                                const GltfOptions& options) {
+    if (std::optional<EncodeError> fault = find_fault(mesh, options)) return *std::move(fault);
+    const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre);
+    std::vector<std::array<float, 3>> normals;
+    if (options.normals) normals = smooth_normals(mesh);
+    const SceneInput input{mesh, options, normals};
+
+    GltfResult result;
+    std::variant<std::vector<GlbNode>, EncodeError> nodes;
+    if (options.compression == Compression::Draco) {
+        nodes = compressed(input, bounds, result);
+    } else {
+        nodes = plain(input, bounds, result);
+    }
+    if (auto* error = std::get_if<EncodeError>(&nodes)) return std::move(*error);
+    GlbScene scene;
+    scene.generator = "Tinsmith";
+    scene.nodes = std::get<std::vector<GlbNode>>(std::move(nodes));
+    if (auto error = count_primitives(mesh, options, scene.nodes, result)) return *std::move(error);
+    scene.extras = extras_of(mesh, options, result);
+    auto file = write_glb_file(scene);
+    if (auto* error = std::get_if<EncodeError>(&file)) return std::move(*error);
+    result.bytes = std::get<std::string>(std::move(file));
+    return result;
+}
+
+}  // namespace tinsmith::api

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "api/formats/gltf.hpp"
+#include "api/formats/gltf_writer.hpp"
+#include "api/formats/quantization.hpp"
+#include "core/types/mesh_data.hpp"
+
+namespace tinsmith::api {
+
+/// A position or direction of the session (z up) in the file's axes. Counter-clockwise seen from
+/// above stays so: both are rotations.
+template <typename T>
+std::array<T, 3> to_axes(const std::array<T, 3>& v, UpAxis up) {
+    if (up == UpAxis::Z) return v;
+    return {v[0], v[2], T{0} - v[1]};  // 0 - 0 is 0, where -0 would be minus zero
+}
+
+/// A direction for each vertex, in session axes, of length 1: the sum of its triangles' normals,
+/// each weighted by its area. (0, 0, 1) where that is zero. Cost: one pass.
+std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh);
+
+/// What the mesh's primitives are made of. `normals` as from smooth_normals, or empty.
+struct SceneInput {
+    const core::MeshData& mesh;
+    const GltfOptions& options;
+    std::span<const std::array<float, 3>> normals;
+};
+
+/// Draco primitives on the grid: one if it fits, else tiles, and constraint lines; see write_glb.
+/// Requires: a valid mesh, `points` as from quantize.
+std::variant<std::vector<GlbNode>, EncodeError> draco_nodes(const SceneInput& input,
+                                                            const PositionGrid& grid,
+                                                            std::span<const GridPoint> points);
+
+/// One node with the mesh in its own order, `positions` in session axes from `origin`, and
+/// constraint lines.
+GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
+                   std::span<const std::array<float, 3>> positions);
+
+}  // namespace tinsmith::api

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/quantization.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tinsmith::api {
+namespace {
+
+/// Room for the rounding of x * unit and of the subtraction of the origin, relative to half a step.
+constexpr double kRoom = 1.0 - 0x1p-40;
+
+std::array<double, 3> in_metres(const core::Point3& vertex, double unit) {
+    return {vertex.x * unit, vertex.y * unit, vertex.z * unit};
+}
+
+double widest_half(const Box<double>& bounds, const std::array<double, 3>& middle) {
+    double half = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        half = std::max({half, bounds.high[axis] - middle[axis], middle[axis] - bounds.low[axis]});
+    }
+    return half;
+}
+
+/// Is the mesh within kGridLimit steps of 2^exponent metres from its middle?
+bool holds(const Box<double>& bounds, const std::array<double, 3>& middle, int exponent) {
+    return std::ldexp(widest_half(bounds, middle), -exponent) < double{kGridLimit} - 1.0;
+}
+
+}  // namespace
+
+double PositionGrid::step() const {
+    return std::ldexp(1.0, exponent);
+}
+
+std::int32_t PositionGrid::period() const {
+    return exponent >= 0 ? 1 : std::int32_t{1} << -exponent;
+}
+
+Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre) {
+    Box<double> bounds;
+    for (const core::Point3& vertex : mesh.vertices)
+        bounds.add(in_metres(vertex, unit_to_metre));
+    return bounds;
+}
+
+std::array<double, 3> whole_metre_middle(const Box<double>& bounds) {
+    std::array<double, 3> middle{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        // Adding zero turns a rounded -0.4 into a plain 0 for the JSON.
+        middle[axis] = std::nearbyint(bounds.low[axis] / 2 + bounds.high[axis] / 2) + 0.0;
+    }
+    return middle;
+}
+
+std::optional<PositionGrid> grid_for(const Box<double>& bounds, double tolerance) {
+    // Rounding to a step s moves a coordinate by s / 2 at most: s is the power of two <= 2 * t.
+    int exponent = 0;
+    std::frexp(std::min(tolerance, 0x1p40) * kRoom, &exponent);  // t = f * 2^exponent, f < 1
+    PositionGrid grid{whole_metre_middle(bounds), std::min(exponent, kCoarsestExponent)};
+    if (grid.exponent < kFinestExponent) return std::nullopt;
+    if (!holds(bounds, grid.origin, grid.exponent)) return std::nullopt;
+    return grid;
+}
+
+double finest_tolerance(const Box<double>& bounds) {
+    const std::array<double, 3> middle = whole_metre_middle(bounds);
+    int exponent = kFinestExponent;
+    // Ends: doubles reach 2^1024.
+    while (!holds(bounds, middle, exponent))
+        ++exponent;
+    return std::ldexp(1.0, exponent);
+}
+
+std::vector<GridPoint> quantize(const core::MeshData& mesh, double unit_to_metre,
+                                const PositionGrid& grid) {
+    const double steps_in_metre = std::ldexp(1.0, -grid.exponent);
+    std::vector<GridPoint> points;
+    points.reserve(mesh.vertices.size());
+    for (const core::Point3& vertex : mesh.vertices) {
+        const std::array<double, 3> metres = in_metres(vertex, unit_to_metre);
+        GridPoint& point = points.emplace_back();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            // lrint, not lround: one instruction, and a tie goes to the even step on every machine.
+            point[axis] = static_cast<std::int32_t>(
+                std::lrint((metres[axis] - grid.origin[axis]) * steps_in_metre));
+        }
+    }
+    return points;
+}
+
+std::array<double, 3> largest_error(const core::MeshData& mesh, double unit_to_metre,
+                                    const PositionGrid& grid, std::span<const GridPoint> points) {
+    const double step = grid.step();
+    std::array<double, 3> largest{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::array<double, 3> metres = in_metres(mesh.vertices[i], unit_to_metre);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double decoded = grid.origin[axis] + step * points[i][axis];
+            largest[axis] = std::max(largest[axis], std::fabs(decoded - metres[axis]));
+        }
+    }
+    return largest;
+}
+
+PlanCheck check_plan(std::span<const GridPoint> points,
+                     std::span<const std::array<std::uint32_t, 3>> triangles) {
+    PlanCheck check;
+    for (const auto& [a, b, c] : triangles) {
+        const std::int64_t ax = points[a][0];
+        const std::int64_t ay = points[a][1];
+        // Differences stay within 2^31, so each product fits; they are compared, not subtracted.
+        const std::int64_t left = (points[b][0] - ax) * (points[c][1] - ay);
+        const std::int64_t right = (points[b][1] - ay) * (points[c][0] - ax);
+        if (left < right) ++check.flipped;
+        if (left == right) ++check.collapsed;
+    }
+    return check;
+}
+
+}  // namespace tinsmith::api
