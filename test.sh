@@ -11,6 +11,7 @@ Usage: ./test.sh [PART...]    installs what is missing, builds, tests; the fast 
   readme      the README's curl lines against a server of its own
   node        what other people's readers say of our files (tests/*/package.json)
   sanitizers  every test again under ASan and UBSan, server and end-to-end tests under TSan
+  tidy        clang-tidy over core, api and server (minutes; not among the default)
   image       the container image, built and asked with no engine (root; not among the default)
 
 Without a PART: fast, readme, node, sanitizers. The last line is "N passed, N failed".
@@ -177,6 +178,14 @@ part_sanitizers() {
     fi
 }
 
+part_tidy() {
+    docker/packages/install.sh tidy || { tally "installing clang-tidy" 0 1; return; }
+    build dev || return
+    heading "clang-tidy"
+    check tidy bash -o pipefail -c "find core api server -name '*.cpp' -print0 |
+        xargs -0 -n 4 -P $jobs clang-tidy --quiet -p build/dev 2>&1 | grep -v 'warnings generated'"
+}
+
 part_image() {
     heading "container image"
     check image docker/build-without-engine.sh
@@ -186,7 +195,7 @@ parts=("$@")
 ((${#parts[@]})) || parts=(fast readme node sanitizers)
 for part in "${parts[@]}"; do
     case $part in
-        fast | readme | node | sanitizers | image) ;;
+        fast | readme | node | sanitizers | tidy | image) ;;
         -h | --help | help) usage && exit 0 ;;
         *) usage >&2 && exit 2 ;;
     esac

@@ -59,12 +59,12 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 std::vector<Include> includes_of(const std::string& text) {
-    static const std::regex pattern(R"re(^\s*#\s*include\s*([<"])([^>"]*)[>"].*)re");
+    static const std::regex kPattern(R"re(^\s*#\s*include\s*([<"])([^>"]*)[>"].*)re");
     std::vector<Include> includes;
     const auto lines = lines_of(text);
     for (std::size_t i = 0; i < lines.size(); ++i) {
         std::smatch match;
-        if (std::regex_match(lines[i], match, pattern))
+        if (std::regex_match(lines[i], match, kPattern))
             includes.push_back({i + 1, match[2], match[1] == "\""});
     }
     return includes;
@@ -151,17 +151,17 @@ class FileCheck {
     }
 
     void check_words() {
-        static const std::regex narrow(R"(\bfloat\b)");
-        static const std::regex vague_type(
+        static const std::regex kNarrow(R"(\bfloat\b)");
+        static const std::regex kVagueType(
             R"(\b(class|struct|namespace)\s+\w*(utils?|helpers?|common|manager)\b)",
             std::regex::icase);
-        static const std::regex vague_path(R"((^|[/_])(utils?|helpers?|common|manager)([/_.]|$))");
-        if (std::regex_search(source_.path, vague_path)) report(0, "has a name that says nothing");
+        static const std::regex kVaguePath(R"((^|[/_])(utils?|helpers?|common|manager)([/_.]|$))");
+        if (std::regex_search(source_.path, kVaguePath)) report(0, "has a name that says nothing");
         const auto lines = lines_of(code_only(source_.text));
         for (std::size_t i = 0; i < lines.size(); ++i) {
-            if (is_under(source_.path, "core") && std::regex_search(lines[i], narrow))
+            if (is_under(source_.path, "core") && std::regex_search(lines[i], kNarrow))
                 report(i + 1, "float in core");
-            if (std::regex_search(lines[i], vague_type))
+            if (std::regex_search(lines[i], kVagueType))
                 report(i + 1, "declares a name that says nothing");
         }
     }
