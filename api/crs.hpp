@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tinsmith::api {
+
+/// One spelling for the name of a coordinate reference system: "EPSG:32616" from "epsg:32616",
+/// "urn:ogc:def:crs:EPSG::32616" and "http://www.opengis.net/def/crs/EPSG/0/32616" alike.
+/// nullopt: not such a name. Whether the code exists is not looked up.
+std::optional<std::string> normalise_crs(std::string_view name);
+
+/// Whether a normalised name is one of the common systems in degrees, such as "EPSG:4326". An
+/// answer of no promises nothing: there are hundreds of others.
+bool is_common_geographic(std::string_view crs);
+
+/// The unit's one spelling, "metre", "foot" or "US survey foot", from that and its common others
+/// ("m", "meter", "ft", "ftUS"). nullopt: unknown.
+std::optional<std::string> normalise_unit(std::string_view name);
+
+/// Length of a normalised unit in metres. Requires: `unit` came from normalise_unit.
+double metres_per(std::string_view unit);
+
+}  // namespace tinsmith::api

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/geojson.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "api/crs.hpp"
+#include "api/formats/geojson_coordinates.hpp"
+#include "api/formats/geojson_shape.hpp"
+#include "api/formats/json_reader.hpp"
+#include "api/formats/json_reader_text.hpp"
+#include "api/formats/json_reader_values.hpp"
+
+namespace tinsmith::api {
+
+namespace {
+
+using json::Container;
+using json::Object;
+using json::pointer_to;
+using json::quoted;
+using json::Reader;
+using json::Scalar;
+using json::Value;
+
+constexpr std::size_t kMostOptions = 64;
+constexpr std::size_t kLongestText = 1000;  ///< of an option, an id
+
+/// What was read of a geometry; its "type" may be its last member.
+struct GeometryDraft {
+    std::string type;
+    Coordinates coordinates;
+};
+
+/// What was read of a Feature.
+struct FeatureDraft {
+    std::string type;
+    std::optional<RequestedShape> shape;  ///< of its geometry, unless that had faults
+    std::string id;
+    std::string properties = "{}";
+};
+
+/// A Feature's id: a text or a number.
+class Id : public json::Text {
+  public:
+    explicit Id(std::string& out) : Text(out, kLongestText), out_(out) {}
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (!value.is_number()) return Text::scalar(reader, value);
+        out_ = json::plain_text(value);
+    }
+
+  protected:
+    std::string_view expected() const override { return "a text or a number"; }
+
+  private:
+    std::string& out_;
+};
+
+/// The member "tinsmith": names and scalars.
+class Options : public Value, public Container {
+  public:
+    using Pairs = std::vector<std::pair<std::string, std::string>>;
+    explicit Options(Pairs& out) : option_(out) {}
+
+    Container* object(Reader&) override { return this; }
+    Value* member(Reader& reader, std::string_view name) override {
+        const bool repeated = std::any_of(option_.out.begin(), option_.out.end(),
+                                          [&](const auto& pair) { return pair.first == name; });
+        if (repeated) {
+            reader.fault("MEMBER_REPEATED", quoted(name) + " is here twice; give it once.");
+            return nullptr;
+        }
+        if (option_.out.size() == kMostOptions) {
+            reader.stop(FaultKind::Invalid,
+                        {"TOO_MANY_MEMBERS",
+                         "No more than " + std::to_string(kMostOptions) + " options are taken.",
+                         reader.pointer()});
+            return nullptr;
+        }
+        option_.out.emplace_back(name, "");
+        return &option_;
+    }
+
+  protected:
+    std::string_view expected() const override { return "an object of options"; }
+
+  private:
+    struct Option : Value {
+        explicit Option(Pairs& pairs) : out(pairs) {}
+        void scalar(Reader& reader, const Scalar& value) override {
+            if (value.kind == Scalar::Kind::Null) return Value::scalar(reader, value);
+            if (value.text.size() > kLongestText) {
+                return reader.fault("TEXT_TOO_LONG",
+                                    "At most " + std::to_string(kLongestText) + " bytes.");
+            }
+            out.back().second = json::plain_text(value);
+        }
+        std::string_view expected() const override { return "a text, a number, true or false"; }
+        Pairs& out;
+    };
+
+    Option option_;
+};
+
+/// The member "crs" of GeoJSON 2008: {"type": "name", "properties": {"name": "EPSG:32616"}}.
+class LegacyCrs : public Object {
+  public:
+    explicit LegacyCrs(std::string& out) : Object(Unknown::PassOver), out_(out) {
+        properties_.expect({{"name", &name_value_, true}});
+        expect({{"type", &type_value_}, {"properties", &properties_, true}});
+    }
+
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (value.kind != Scalar::Kind::Null) Value::scalar(reader, value);  // null: not known
+    }
+
+  protected:
+    void ended(Reader& reader) override {
+        if (!type_.empty() && type_ != "name") {
+            reader.fault("CRS_UNKNOWN", "A crs of type " + quoted(type_) +
+                                            " is not read; name it: {\"type\": \"name\", ...}.");
+        } else if (auto crs = normalise_crs(name_)) {
+            out_ = *std::move(crs);
+        } else if (reader.log().empty() || !name_.empty()) {
+            reader.fault("CRS_UNKNOWN", quoted(name_) +
+                                            " is no name of a reference system; write it like "
+                                            "\"urn:ogc:def:crs:EPSG::32616\".");
+        }
+    }
+
+  private:
+    std::string& out_;
+    std::string type_;
+    std::string name_;
+    json::Text type_value_{type_};
+    json::Text name_value_{name_};
+    Object properties_{Unknown::PassOver};
+};
+
+/// The shape of a geometry that has been read: the body, or a Feature's. nullopt: it has faults.
+std::optional<RequestedShape> finish_geometry(GeometryDraft& draft, Reader& reader) {
+    if (draft.type == "GeometryCollection") {
+        reader.add(FaultKind::Unsupported,
+                   {"GEOMETRY_COLLECTION_UNSUPPORTED",
+                    "Geometry collections are not taken; send each geometry as a Feature of a "
+                    "FeatureCollection.",
+                    reader.pointer()});
+        return std::nullopt;
+    }
+    const auto type = geometry_type(draft.type);
+    if (!type) {
+        reader.add(
+            FaultKind::Invalid,
+            {"GEOJSON_TYPE",
+             quoted(draft.type) + " is no geometry. Known are: Point, MultiPoint, LineString, "
+                                  "MultiLineString, Polygon, MultiPolygon.",
+             pointer_to(reader.pointer(), "type")});
+        return std::nullopt;
+    }
+    return make_shape(*type, draft.coordinates, reader.pointer(), reader.log());
+}
+
+/// The value of a Feature's member "geometry".
+class GeometryObject : public Object {
+  public:
+    GeometryObject(FeatureDraft& feature, CoordinatesReader& coordinates)
+        : Object(Unknown::PassOver), feature_(feature), coordinates_(coordinates) {
+        expect({{"type", &type_, true}, {"coordinates", &coordinates_}, {"geometries"}});
+    }
+
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (value.kind != Scalar::Kind::Null) return Value::scalar(reader, value);
+        reader.fault("SHAPE_EMPTY", "This Feature has no geometry; there is nothing to integrate.");
+    }
+
+  protected:
+    std::string_view expected() const override { return "a geometry"; }
+    void begun(Reader&) override {
+        draft_ = {};
+        coordinates_.write_to(draft_.coordinates);
+    }
+    void ended(Reader& reader) override {
+        if (has("coordinates") || draft_.type == "GeometryCollection") {
+            feature_.shape = finish_geometry(draft_, reader);
+        } else {
+            reader.fault("MEMBER_MISSING", "\"coordinates\" is needed here.");
+        }
+    }
+
+  private:
+    FeatureDraft& feature_;
+    CoordinatesReader& coordinates_;
+    GeometryDraft draft_;
+    json::Text type_{draft_.type};
+};
+
+/// Hands the Feature's shape on with what belongs to the Feature.
+void finish_feature(FeatureDraft& draft, std::vector<RequestedShape>& shapes) {
+    if (!draft.shape) return;  // the fault was told where the geometry is, or is missing
+    draft.shape->id = std::move(draft.id);
+    draft.shape->properties = std::move(draft.properties);
+    shapes.push_back(*std::move(draft.shape));
+}
+
+/// An element of "features".
+class FeatureObject : public Object {
+  public:
+    FeatureObject(std::vector<RequestedShape>& shapes, CoordinatesReader& coordinates)
+        : Object(Unknown::PassOver), shapes_(shapes), geometry_(draft_, coordinates) {
+        expect({{"type", &type_, true},
+                {"geometry", &geometry_, true},
+                {"properties", &properties_},
+                {"id", &id_}});
+    }
+
+  protected:
+    std::string_view expected() const override { return "a Feature"; }
+    void begun(Reader&) override {
+        draft_ = {};
+        properties_.write_to(draft_.properties);
+    }
+    void ended(Reader& reader) override {
+        if (draft_.type != "Feature") {
+            reader.add(
+                FaultKind::Invalid,
+                {"GEOJSON_TYPE",
+                 quoted(draft_.type) + " is not taken here: the elements of \"features\" are of "
+                                       "type \"Feature\".",
+                 pointer_to(reader.pointer(), "type")});
+        }
+        finish_feature(draft_, shapes_);
+    }
+
+  private:
+    std::vector<RequestedShape>& shapes_;
+    FeatureDraft draft_;
+    json::Text type_{draft_.type};
+    Id id_{draft_.id};
+    json::ObjectText properties_;
+    GeometryObject geometry_;
+};
+
+class FeatureList : public Value, public Container {
+  public:
+    FeatureList(std::vector<RequestedShape>& shapes, CoordinatesReader& coordinates)
+        : feature_(shapes, coordinates) {}
+
+    Container* array(Reader&) override { return this; }
+    Value* element(Reader&) override { return &feature_; }
+
+  protected:
+    std::string_view expected() const override { return "an array of Features"; }
+
+  private:
+    FeatureObject feature_;
+};
+
+/// The body: a FeatureCollection, a Feature or a geometry, told apart when all has been read.
+class Body : public Object {
+  public:
+    explicit Body(const ReadLimits& limits)
+        : Object(Unknown::PassOver), coordinates_(limits.max_polygon_vertices) {
+        expect({{"type", &type_, true},
+                {"features", &features_},
+                {"geometry", &geometry_},
+                {"properties", &properties_},
+                {"id", &id_},
+                {"coordinates", &coordinates_},
+                {"geometries"},
+                {"crs", &crs_},
+                {"tinsmith", &options_}});
+    }
+
+    Value* member(Reader& reader, std::string_view name) override {
+        // A member "geometry" borrows the same reader; the coordinates are the body's again.
+        if (name == "coordinates") coordinates_.write_to(own_geometry_.coordinates);
+        return Object::member(reader, name);
+    }
+
+    Parsed<PolygonRequest> result(FaultLog&& log) && {
+        if (!log.empty()) return std::move(log).refusal<PolygonRequest>();
+        return std::move(request_);
+    }
+
+  protected:
+    std::string_view expected() const override { return "a GeoJSON object"; }
+    void begun(Reader&) override { properties_.write_to(feature_.properties); }
+    void ended(Reader& reader) override {
+        std::string_view content = "coordinates";
+        if (type_text_ == "FeatureCollection") content = "features";
+        if (type_text_ == "Feature") content = "geometry";
+        if (type_text_ == "GeometryCollection") content = "geometries";
+        refuse_strangers(reader, content);
+        if (!has(content)) {
+            if (content == "coordinates" && !geometry_type(type_text_)) {
+                refuse_type(reader);
+            } else {
+                reader.fault("MEMBER_MISSING", quoted(content) + " is needed here.");
+            }
+        } else if (content == "features") {
+            if (request_.shapes.empty() && reader.log().empty()) {
+                reader.add(FaultKind::Invalid,
+                           {"SHAPE_EMPTY", "There is no Feature; there is nothing to integrate.",
+                            pointer_to(reader.pointer(), "features")});
+            }
+        } else {
+            if (content != "geometry") {
+                own_geometry_.type = type_text_;
+                feature_.shape = finish_geometry(own_geometry_, reader);
+                feature_.properties = "{}";  // a geometry has none: they would be foreign
+            }
+            finish_feature(feature_, request_.shapes);
+        }
+    }
+
+  private:
+    static void refuse_type(Reader& reader) {
+        reader.add(FaultKind::Invalid,
+                   {"GEOJSON_TYPE",
+                    "The type of a body is FeatureCollection, Feature, Point, MultiPoint, "
+                    "LineString, MultiLineString, Polygon or MultiPolygon.",
+                    pointer_to(reader.pointer(), "type")});
+    }
+
+    /// RFC 7946, 7.1: members that make a type are not foreign members of another. Shapes that
+    /// are in the body and not meant by its type would otherwise be lost without a word.
+    void refuse_strangers(Reader& reader, std::string_view content) {
+        for (const std::string_view name : {"features", "geometry", "coordinates", "geometries"}) {
+            if (name == content || !has(name)) continue;
+            reader.add(FaultKind::Invalid, {"MEMBER_NOT_ALLOWED",
+                                            quoted(name) + " does not belong to a body of type " +
+                                                quoted(type_text_) + ".",
+                                            pointer_to(reader.pointer(), name)});
+        }
+    }
+
+    PolygonRequest request_;
+    std::string type_text_;
+    GeometryDraft own_geometry_;  ///< when the body is a geometry
+    FeatureDraft feature_;        ///< when the body is a Feature
+    CoordinatesReader coordinates_;
+    json::Text type_{type_text_};
+    Id id_{feature_.id};
+    json::ObjectText properties_;
+    GeometryObject geometry_{feature_, coordinates_};
+    FeatureList features_{request_.shapes, coordinates_};
+    LegacyCrs crs_{request_.crs};
+    Options options_{request_.options};
+};
+
+}  // namespace
+
+Parsed<PolygonRequest> read_geojson(std::string_view body, const ReadLimits& limits) {
+    Body root(limits);
+    Reader reader(root, limits);
+    json::read(body, reader);
+    return std::move(root).result(std::move(reader.log()));
+}
+
+}  // namespace tinsmith::api

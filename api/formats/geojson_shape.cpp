@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/geojson_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "api/formats/json_reader.hpp"
+
+namespace tinsmith::api {
+
+namespace {
+
+using core::Point2;
+using json::pointer_to;
+
+struct TypeRow {
+    GeometryType type;
+    std::string_view name;
+    std::size_t depth;  ///< of its positions, in the sense of Coordinates
+};
+
+constexpr std::array<TypeRow, 6> kTypes{{
+    {GeometryType::Point, "Point", 1},
+    {GeometryType::MultiPoint, "MultiPoint", 2},
+    {GeometryType::LineString, "LineString", 2},
+    {GeometryType::MultiLineString, "MultiLineString", 3},
+    {GeometryType::Polygon, "Polygon", 3},
+    {GeometryType::MultiPolygon, "MultiPolygon", 4},
+}};
+
+const TypeRow& row_of(GeometryType type) {
+    return *std::find_if(kTypes.begin(), kTypes.end(),
+                         [&](const TypeRow& row) { return row.type == type; });
+}
+
+bool is_polygonal(GeometryType type) {
+    return type == GeometryType::Polygon || type == GeometryType::MultiPolygon;
+}
+
+/// How many different positions there are, counted up to `most`, which is 3 at most: beyond the
+/// first and the first unlike it, one look at each position is enough.
+std::size_t distinct(std::span<const Point2> points, std::size_t most) {
+    std::size_t found = 0;
+    std::array<Point2, 3> seen{};
+    for (const Point2& point : points) {
+        const auto end = seen.begin() + static_cast<std::ptrdiff_t>(found);
+        if (std::find(seen.begin(), end, point) != end) continue;
+        seen[found++] = point;
+        if (found == most) break;
+    }
+    return found;
+}
+
+class ShapeMaker {
+  public:
+    ShapeMaker(GeometryType type, Coordinates& coordinates, std::string pointer, FaultLog& log)
+        : coordinates_(coordinates), log_(log) {
+        made_.type = type;
+        made_.pointer = std::move(pointer);
+    }
+
+    RequestedShape make() {
+        if (nesting_fits()) {
+            const std::size_t depth = row_of(made_.type).depth;
+            if (depth == 1 || made_.type == GeometryType::MultiPoint) {
+                take_points();
+            } else {
+                if (made_.type == GeometryType::MultiPolygon) take_polygons();
+                take_lines(coordinates_.arrays[depth - 2]);
+            }
+        }
+        coordinates_.clear();
+        return std::move(made_);
+    }
+
+  private:
+    void fault(std::string code, std::string detail, std::string pointer,
+               const Point2* at = nullptr) {
+        Fault made{std::move(code), std::move(detail), std::move(pointer)};
+        if (at != nullptr) made.coordinate = {at->x, at->y};
+        log_.add(FaultKind::Invalid, std::move(made));
+    }
+
+    std::string place() const { return pointer_to(made_.pointer, "coordinates"); }
+
+    /// Of a whole path, or of the geometry's coordinates where the path is all of them.
+    std::string place_of(std::size_t path) const {
+        std::string pointer = coordinate_pointer(made_, path, 0);
+        pointer.resize(pointer.rfind('/'));
+        return pointer;
+    }
+
+    bool nesting_fits() {
+        if (!coordinates_.sound) return false;  // told while it was read
+        const TypeRow& row = row_of(made_.type);
+        const auto& arrays = coordinates_.arrays;
+        const bool empty = row.depth > 1 ? arrays[row.depth - 2].empty() : true;
+        if (coordinates_.depth == 0 && (empty || !arrays[row.depth - 1].empty())) {
+            fault("SHAPE_EMPTY", "This geometry has no position.", place());
+            return false;
+        }
+        if (coordinates_.depth != 0 && coordinates_.depth != row.depth) {
+            fault("COORDINATES_NESTING",
+                  "The positions of a " + std::string(row.name) + " lie in " +
+                      std::to_string(row.depth - 1) + " arrays; here they lie in " +
+                      std::to_string(coordinates_.depth - 1) + ".",
+                  place());
+            return false;
+        }
+        return true;
+    }
+
+    void take_points() {
+        made_.shape.paths.reserve(coordinates_.positions.size());
+        for (const Point2& position : coordinates_.positions) {
+            made_.shape.paths.push_back({{position}, false});
+        }
+    }
+
+    void take_polygons() {
+        const auto& polygons = coordinates_.arrays[1];
+        const std::size_t rings = coordinates_.arrays[2].size();
+        for (std::size_t i = 0; i < polygons.size(); ++i) {
+            made_.polygon_starts.push_back(polygons[i].array);
+            const std::size_t end = i + 1 < polygons.size() ? polygons[i + 1].array : rings;
+            if (polygons[i].array < end) continue;
+            fault("SHAPE_EMPTY", "This polygon has no ring.", pointer_to(place(), i));
+        }
+    }
+
+    void take_lines(const std::vector<Coordinates::Start>& lines) {
+        const std::vector<Point2>& positions = coordinates_.positions;
+        made_.shape.paths.reserve(lines.size());
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const std::size_t begin = lines[i].position;
+            const std::size_t end = i + 1 < lines.size() ? lines[i + 1].position : positions.size();
+            const std::span line(positions.data() + begin, end - begin);
+            // A position at fault was told; whether its line is right cannot be said.
+            const bool known = std::none_of(line.begin(), line.end(),
+                                            [](const Point2& p) { return std::isnan(p.x); });
+            made_.shape.paths.push_back(is_polygonal(made_.type) ? ring(i, line, known)
+                                                                 : open_line(i, line, known));
+        }
+    }
+
+    core::Path open_line(std::size_t path, std::span<const Point2> line, bool known) {
+        if (known && distinct(line, 2) < 2) {
+            fault("LINE_TOO_SHORT", "A line needs two different positions.", place_of(path),
+                  line.empty() ? nullptr : &line.front());
+        }
+        return {{line.begin(), line.end()}, false};
+    }
+
+    core::Path ring(std::size_t path, std::span<const Point2> line, bool known) {
+        if (!known) return {};
+        const Point2* const first = line.empty() ? nullptr : &line.front();
+        if (line.size() < 4 || distinct(line, 3) < 3) {
+            fault("RING_TOO_SHORT",
+                  "A ring needs four positions, the last the same as the first, and three that "
+                  "differ.",
+                  place_of(path), first);
+        } else if (line.front() != line.back()) {
+            fault("RING_NOT_CLOSED", "The last position of a ring is the same as its first.",
+                  pointer_to(place_of(path), line.size() - 1), &line.back());
+        } else {
+            line = line.first(line.size() - 1);
+        }
+        return {{line.begin(), line.end()}, true};
+    }
+
+    Coordinates& coordinates_;
+    FaultLog& log_;
+    RequestedShape made_;
+};
+
+}  // namespace
+
+std::string_view geometry_name(GeometryType type) {
+    return row_of(type).name;
+}
+
+std::optional<GeometryType> geometry_type(std::string_view name) {
+    for (const TypeRow& row : kTypes) {
+        if (row.name == name) return row.type;
+    }
+    return std::nullopt;
+}
+
+std::string coordinate_pointer(const RequestedShape& shape, std::size_t path, std::size_t point) {
+    const std::string base = pointer_to(shape.pointer, "coordinates");
+    switch (shape.type) {
+        case GeometryType::Point:
+            return base;
+        case GeometryType::MultiPoint:
+            return pointer_to(base, path);
+        case GeometryType::LineString:
+            return pointer_to(base, point);
+        case GeometryType::MultiLineString:
+        case GeometryType::Polygon:
+            return pointer_to(pointer_to(base, path), point);
+        case GeometryType::MultiPolygon:
+            break;
+    }
+    const auto& starts = shape.polygon_starts;
+    // The last polygon that begins at or before the path; one without rings begins where the next
+    // one does and is passed by.
+    const auto after = std::upper_bound(starts.begin(), starts.end(), path);
+    const auto polygon = static_cast<std::size_t>(after - starts.begin()) - 1;
+    return pointer_to(pointer_to(pointer_to(base, polygon), path - starts[polygon]), point);
+}
+
+RequestedShape make_shape(GeometryType type, Coordinates& coordinates, std::string pointer,
+                          FaultLog& log) {
+    return ShapeMaker(type, coordinates, std::move(pointer), log).make();
+}
+
+}  // namespace tinsmith::api

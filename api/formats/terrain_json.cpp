@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/terrain_json.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "api/crs.hpp"
+#include "api/formats/grid_mesh.hpp"
+#include "api/formats/json_reader.hpp"
+#include "api/formats/json_reader_values.hpp"
+
+namespace tinsmith::api {
+
+namespace {
+
+using json::Container;
+using json::Member;
+using json::Object;
+using json::Reader;
+using json::Scalar;
+using json::Tuple;
+using json::Value;
+
+Fault too_many(std::string code, std::string_view what, std::size_t most, std::string pointer) {
+    return {std::move(code),
+            "More than " + std::to_string(most) + " " + std::string(what) + "; no more are taken.",
+            std::move(pointer)};
+}
+
+/// An array of tuples that go straight into the mesh's buffers, up to a limit.
+class VertexList : public Value, public Container {
+  public:
+    VertexList(std::vector<core::Point3>& out, std::size_t most) : vertex_(out), most_(most) {}
+
+    Container* array(Reader&) override { return this; }
+    Value* element(Reader& reader) override {
+        if (vertex_.out.size() < most_) return &vertex_;
+        reader.stop(FaultKind::TooLarge,
+                    too_many("TOO_MANY_VERTICES", "vertices", most_, reader.pointer()));
+        return nullptr;
+    }
+
+  protected:
+    std::string_view expected() const override { return "an array of vertices"; }
+
+  private:
+    struct Vertex : Tuple {
+        explicit Vertex(std::vector<core::Point3>& vertices)
+            : Tuple(3, Items::Coordinate, "a vertex [x, y, z]"), out(vertices) {}
+        void complete(Reader&) override {
+            out.push_back({numbers()[0], numbers()[1], numbers()[2]});
+        }
+        std::vector<core::Point3>& out;
+    };
+
+    Vertex vertex_;
+    std::size_t most_;
+};
+
+class TriangleList : public Value, public Container {
+  public:
+    using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+    TriangleList(Triangles& out, std::size_t most) : triangle_(out), most_(most) {}
+
+    Container* array(Reader&) override { return this; }
+    Value* element(Reader& reader) override {
+        if (triangle_.out.size() < most_) return &triangle_;
+        reader.stop(FaultKind::TooLarge,
+                    too_many("TOO_MANY_TRIANGLES", "triangles", most_, reader.pointer()));
+        return nullptr;
+    }
+
+  protected:
+    std::string_view expected() const override { return "an array of triangles"; }
+
+  private:
+    struct Triangle : Tuple {
+        explicit Triangle(Triangles& triangles)
+            : Tuple(3, Items::Index, "a triangle [a, b, c] of vertex indices"), out(triangles) {}
+        void complete(Reader&) override {
+            const auto index = [&](std::size_t i) {
+                return static_cast<std::uint32_t>(numbers()[i]);
+            };
+            out.push_back({index(0), index(1), index(2)});
+        }
+        Triangles& out;
+    };
+
+    Triangle triangle_;
+    std::size_t most_;
+};
+
+/// An array of numbers and nulls; null is no data, NaN in the result.
+class Elevations : public Value, public Container {
+  public:
+    Elevations(std::vector<double>& out, std::size_t most) : out_(out), most_(most) {}
+
+    Container* array(Reader&) override { return this; }
+    Value* element(Reader& reader) override {
+        if (out_.size() < most_) return &elevation_;
+        reader.stop(FaultKind::TooLarge,
+                    too_many("TOO_MANY_VERTICES", "elevations", most_, reader.pointer()));
+        return nullptr;
+    }
+
+  protected:
+    std::string_view expected() const override { return "an array of elevations"; }
+
+  private:
+    class Elevation : public Value {
+      public:
+        explicit Elevation(std::vector<double>& out) : out_(out) {}
+        void scalar(Reader& reader, const Scalar& value) override {
+            double elevation = std::numeric_limits<double>::quiet_NaN();
+            if (value.is_number()) {
+                elevation = value.number;
+                if (!json::acceptable_coordinate(elevation)) {
+                    reader.fault("COORDINATE_OUT_OF_RANGE", json::coordinate_out_of_range());
+                }
+            } else if (value.kind != Scalar::Kind::Null) {
+                Value::scalar(reader, value);
+            }
+            out_.push_back(elevation);
+        }
+
+      protected:
+        std::string_view expected() const override { return "an elevation or null"; }
+
+      private:
+        std::vector<double>& out_;
+    };
+
+    std::vector<double>& out_;
+    std::size_t most_;
+    Elevation elevation_{out_};
+};
+
+class MeshObject : public Object {
+  public:
+    MeshObject(core::MeshData& mesh, const ReadLimits& limits)
+        : vertices_(mesh.vertices, limits.max_vertices),
+          triangles_(mesh.triangles, limits.max_triangles) {
+        expect({{"vertices", &vertices_, true}, {"triangles", &triangles_, true}});
+    }
+
+  private:
+    VertexList vertices_;
+    TriangleList triangles_;
+};
+
+class GridObject : public Object {
+  public:
+    GridObject(Grid& grid, const ReadLimits& limits)
+        : grid_(grid),
+          limits_(limits),
+          columns_value_(columns_, 2, UINT32_MAX),
+          rows_value_(rows_, 2, UINT32_MAX),
+          elevations_(grid.elevations, limits.max_vertices) {
+        expect({{"origin", &origin_, true},
+                {"cell", &cell_, true},
+                {"columns", &columns_value_, true},
+                {"rows", &rows_value_, true},
+                {"elevations", &elevations_, true}});
+    }
+
+  protected:
+    void ended(Reader& reader) override {
+        if (!reader.log().empty()) return;  // numbers at fault would only make more faults
+        const std::uint64_t posts = columns_ * rows_;  // each below 2^32
+        if (posts > limits_.max_vertices) {
+            reader.stop(FaultKind::TooLarge, too_many("TOO_MANY_VERTICES", "posts",
+                                                      limits_.max_vertices, reader.pointer()));
+        } else if (posts != grid_.elevations.size()) {
+            reader.add(FaultKind::Invalid,
+                       {"WRONG_LENGTH",
+                        std::to_string(columns_) + " columns and " + std::to_string(rows_) +
+                            " rows make " + std::to_string(posts) + " elevations; here are " +
+                            std::to_string(grid_.elevations.size()) + ".",
+                        json::pointer_to(reader.pointer(), "elevations")});
+        }
+        grid_.origin = {origin_.numbers()[0], origin_.numbers()[1]};
+        grid_.dx = cell_.numbers()[0];
+        grid_.dy = cell_.numbers()[1];
+        grid_.columns = columns_;
+        grid_.rows = rows_;
+    }
+
+  private:
+    Grid& grid_;
+    ReadLimits limits_;
+    std::uint64_t columns_ = 0;
+    std::uint64_t rows_ = 0;
+    Tuple origin_{2, Tuple::Items::Coordinate, "an origin [x, y]"};
+    Tuple cell_{2, Tuple::Items::Coordinate, "a cell size [dx, dy]"};
+    json::Whole columns_value_;
+    json::Whole rows_value_;
+    Elevations elevations_;
+};
+
+/// A text that must be one that `normalise` knows.
+class KnownText : public json::Text {
+  public:
+    using Normalise = std::optional<std::string> (*)(std::string_view);
+    KnownText(std::string& out, Normalise normalise, std::string code, std::string known)
+        : Text(out),
+          out_(out),
+          normalise_(normalise),
+          code_(std::move(code)),
+          known_(std::move(known)) {}
+
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (value.kind != Scalar::Kind::Text) return Value::scalar(reader, value);
+        if (auto text = normalise_(value.text)) {
+            out_ = *std::move(text);
+        } else {
+            reader.fault(code_, json::quoted(value.text) + " is not known. " + known_);
+        }
+    }
+
+  private:
+    std::string& out_;
+    Normalise normalise_;
+    std::string code_;
+    std::string known_;
+};
+
+/// "points" is in the contract and not yet in the program.
+class NotYet : public Value {
+  public:
+    void scalar(Reader& reader, const Scalar&) override { refuse(reader); }
+    Container* object(Reader& reader) override { return refuse(reader); }
+    Container* array(Reader& reader) override { return refuse(reader); }
+
+  protected:
+    std::string_view expected() const override { return "nothing"; }
+
+  private:
+    static Container* refuse(Reader& reader) {
+        reader.add(FaultKind::Unsupported,
+                   {"POINTS_UNSUPPORTED",
+                    "Points are not triangulated by this version yet; send a mesh or a grid.",
+                    reader.pointer()});
+        return nullptr;
+    }
+};
+
+class Body : public Object {
+  public:
+    explicit Body(const ReadLimits& limits)
+        : limits_(limits), mesh_(terrain_.mesh, limits), grid_object_(grid_, limits) {
+        expect({{"name", &name_},
+                {"crs", &crs_},
+                {"unit", &unit_},
+                {"mesh", &mesh_},
+                {"points", &points_},
+                {"grid", &grid_object_}});
+    }
+
+    Parsed<Terrain> result(FaultLog&& log) && {
+        if (log.empty() && has("grid")) {
+            auto mesh = mesh_of_grid(grid_, limits_, "/grid");
+            if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
+            terrain_.mesh = std::move(*mesh);
+        }
+        if (!log.empty()) return std::move(log).refusal<Terrain>();
+        return std::move(terrain_);
+    }
+
+  protected:
+    void ended(Reader& reader) override {
+        const int terrains = has("mesh") + has("points") + has("grid");
+        if (terrains == 0) {
+            reader.fault("MEMBER_MISSING",
+                         "A terrain is needed here: one of \"mesh\" and \"grid\".");
+        } else if (terrains > 1) {
+            reader.fault("TERRAIN_REPEATED",
+                         "Give one terrain only: one of \"mesh\" and \"grid\".");
+        }
+        if (is_common_geographic(terrain_.crs)) {
+            reader.add(FaultKind::Unsupported,
+                       {"CRS_GEOGRAPHIC",
+                        terrain_.crs + " is in degrees; project the terrain to metres first.",
+                        json::pointer_to(reader.pointer(), "crs")});
+        }
+    }
+
+  private:
+    ReadLimits limits_;
+    Terrain terrain_;
+    Grid grid_;
+    json::Text name_{terrain_.name};
+    KnownText crs_{terrain_.crs, &normalise_crs, "CRS_UNKNOWN", "Write it like \"EPSG:32616\"."};
+    KnownText unit_{terrain_.unit, &normalise_unit, "UNIT_UNKNOWN",
+                    "Known are: metre, foot, US survey foot."};
+    MeshObject mesh_;
+    NotYet points_;
+    GridObject grid_object_;
+};
+
+}  // namespace
+
+Parsed<Terrain> read_terrain_json(std::string_view body, const ReadLimits& limits) {
+    Body root(limits);
+    Reader reader(root, limits);
+    json::read(body, reader);
+    return std::move(root).result(std::move(reader.log()));
+}
+
+}  // namespace tinsmith::api
