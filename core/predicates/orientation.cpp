@@ -3,7 +3,21 @@
 
 #include "core/predicates/expansion.hpp"
 
-namespace tinsmith::core::detail {
+namespace tinsmith::core {
+
+double compensated_doubled_area(Point2 a, Point2 b, Point2 c) {
+    const Exact acx = exact_difference(a.x, c.x);
+    const Exact bcy = exact_difference(b.y, c.y);
+    const Exact acy = exact_difference(a.y, c.y);
+    const Exact bcx = exact_difference(b.x, c.x);
+    const Exact left = exact_product(acx.value, bcy.value);
+    const Exact right = exact_product(acy.value, bcx.value);
+    const double mixed = (acx.value * bcy.rest + acx.rest * bcy.value) -
+                         (acy.value * bcx.rest + acy.rest * bcx.value);
+    return (left.value - right.value) + ((left.rest - right.rest) + mixed);
+}
+
+namespace detail {
 
 namespace {
 
@@ -39,4 +53,6 @@ double accurate_doubled_area(Point2 a, Point2 b, Point2 c) {
     return exact_determinant(a, b, c).estimate();
 }
 
-}  // namespace tinsmith::core::detail
+}  // namespace detail
+
+}  // namespace tinsmith::core

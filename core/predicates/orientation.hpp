@@ -19,6 +19,7 @@ namespace detail {
 Orientation exact_orientation(Point2 a, Point2 b, Point2 c);
 double accurate_doubled_area(Point2 a, Point2 b, Point2 c);
 
+
 /// Forward error of the plain determinant relative to the sum of its products' magnitudes:
 /// (3 + 16 u) u with u = 2^-53 (Shewchuk 1997).
 inline constexpr double kOrientationError = 3.3306690738754716e-16;
@@ -67,6 +68,10 @@ inline AreaEstimate estimate_doubled_area(Point2 a, Point2 b, Point2 c) {
     const double right = (a.y - c.y) * (b.x - c.x);
     return {left - right, detail::kOrientationError * (std::fabs(left) + std::fabs(right))};
 }
+
+/// Twice the signed area for points almost on one line, where the plain determinant is all
+/// cancellation: its error is about 2^-104 of the products' magnitudes. For measuring only.
+double compensated_doubled_area(Point2 a, Point2 b, Point2 c);
 
 /// True where c, known to lie on the line through a and b, lies strictly ahead of a towards b.
 /// Comparisons only, so exact. Requires: a != b.

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Swapping edges out of the way of a constraint between two vertices.
+#include <algorithm>
+
+#include "core/integrate/march.hpp"
+#include "core/predicates/orientation.hpp"
+
+namespace tinsmith::core {
+
+using enum Orientation;
+
+/// Goes to vertex t by constrained edges: straight, by exact predicates on the vertices as they
+/// are. Vertices met on the way, and ends of edges that rounding put into the way, become part of
+/// the chain, each within rounding of the input segment.
+bool March::connect(VertexId t) {
+    std::vector<VertexId> targets{t};
+    while (!targets.empty()) {
+        if (!within_budget()) return false;
+        const VertexId target = targets.back();
+        if (at_ == target || tin_.plan(at_) == tin_.plan(target)) {
+            targets.pop_back();
+            continue;
+        }
+        const std::optional<VertexId> next = collect_corridor(target);
+        if (!next)
+            return fail(ErrorCode::NotRepresentable,
+                        "rounding leaves no way to this segment within the promised distance; "
+                        "move it, or give a snap distance");
+        if (*next != target && !corridor_.empty()) {
+            if (std::find(targets.begin(), targets.end(), *next) != targets.end() || *next == at_)
+                return fail(ErrorCode::NotRepresentable,
+                            "rounding leads the segment in a circle; move it, or give a snap "
+                            "distance");
+            targets.push_back(*next);
+            continue;
+        }
+        if (!clear_corridor(*next)) return false;
+        surgery_.mark_constrained(find_edge(tin_, *next, at_));
+        measure(tin_.plan(*next));
+        at_ = *next;
+    }
+    return true;
+}
+
+/// Collects the edges between `at_` and t that a straight line crosses. Returns t when they can all
+/// be swapped away; the far end of the first edge when the line runs along it (and no corridor);
+/// otherwise a vertex to go through first; nothing where there is none.
+std::optional<VertexId> March::collect_corridor(VertexId t) {
+    corridor_.clear();
+    const Point2 from = tin_.plan(at_);
+    const Point2 to = tin_.plan(t);
+    const Departure departure = leave(tin_, at_, to, side_from(tin_, at_));
+    if (departure.kind == Departure::Kind::Outside) return {};
+    if (departure.kind == Departure::Kind::AlongEdge) return departure.along(tin_, at_);
+    Side exit = departure.side;
+    while (true) {
+        corridor_.emplace_back(tin_.origin(exit), tin_.destination(exit));
+        if (tin_.is_fixed(exit) || tin_.separates_facets(exit)) return way_around(exit, t);
+        const Side entry = tin_.twin(exit);
+        const VertexId apex = tin_.apex(entry);
+        if (apex == t) return t;
+        switch (orientation(from, to, tin_.plan(apex))) {
+            case Collinear: return apex;
+            case CounterClockwise: exit = entry.next(); break;
+            case Clockwise: exit = entry.previous(); break;
+        }
+    }
+}
+
+/// The end of the edge that the input segment touches to within rounding.
+std::optional<VertexId> March::way_around(Side edge, VertexId t) const {
+    for (const VertexId v : {tin_.origin(edge), tin_.destination(edge)})
+        if (v != at_ && v != t && is_within_rounding(tin_.plan(v))) return v;
+    return {};
+}
+
+/// Swaps all edges of the corridor away, so that at_ and t are joined. An edge whose two triangles
+/// are not convex together waits for its neighbours' swaps. Ends: in a corridor some swap is always
+/// possible, and a budget stands behind that. Source: Sloan 1993; Stanchev & Paraskevov 2020.
+bool March::clear_corridor(VertexId t) {
+    const Point2 from = tin_.plan(at_);
+    const Point2 to = tin_.plan(t);
+    const std::size_t budget = 64 + 16 * corridor_.size() * corridor_.size();
+    for (const auto& [p, q] : corridor_) changed_.insert(changed_.end(), {p, q});
+    for (std::size_t i = 0; i < corridor_.size(); ++i) {
+        if (i > budget)
+            return fail(ErrorCode::StepBudget, "swaps did not clear the way within their budget");
+        const auto [p, q] = corridor_[i];
+        const Side side = find_edge(tin_, p, q);
+        const Point2 a = tin_.plan(tin_.origin(side));
+        const Point2 b = tin_.plan(tin_.destination(side));
+        const VertexId c = tin_.apex(side);
+        const VertexId d = tin_.apex(tin_.twin(side));
+        if (!is_left(a, tin_.plan(d), tin_.plan(c)) || !is_left(tin_.plan(d), b, tin_.plan(c))) {
+            corridor_.emplace_back(p, q);
+            continue;
+        }
+        surgery_.swap_edge(side);
+        ++tally_.edges_swapped;
+        if (c == at_ || c == t || d == at_ || d == t) continue;
+        if (orientation(from, to, tin_.plan(c)) != orientation(from, to, tin_.plan(d)))
+            corridor_.emplace_back(c, d);
+    }
+    return true;
+}
+
+}  // namespace tinsmith::core

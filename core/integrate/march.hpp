@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/integrate/report.hpp"
+#include "core/integrate/shape.hpp"
+#include "core/mesh/surgery.hpp"
+#include "core/mesh/walk.hpp"
+#include "core/types/error.hpp"
+
+namespace tinsmith::core {
+
+/// What a march counted.
+struct MarchTally {
+    std::uint64_t segments = 0;
+    std::uint64_t crossings = 0;       ///< proper crossings with edges there before the operation
+    std::uint64_t self_crossings = 0;  ///< proper crossings with the operation's own constraints
+    std::uint64_t edges_swapped = 0;
+    double max_plan_deviation = 0.0;
+    bool met_mesh = false;
+    std::vector<OutsidePart> outside;
+};
+
+/// Bounds on a march, and how to ask for its end.
+struct MarchLimits {
+    std::uint64_t max_crossings = UINT64_MAX;
+    std::uint64_t max_new_triangles = UINT64_MAX;
+    const std::function<bool()>* cancelled = nullptr;
+};
+
+/// Walks paths through a mesh and leaves each of their segments behind as a chain of constrained
+/// edges: the paper's sections 3.2, 3.3 and 3.5.
+///
+/// At the vertex where it stands, the march finds by exact predicates where the straight way to
+/// the segment's end leaves: along an edge, which it marks; or through an edge. An edge inside a
+/// facet is swapped out of the way. An edge between facets, or a constraint, is split where the
+/// *input* segment crosses it, so that what rounding did to one vertex never adds up.
+///
+/// Laws, after each segment:
+///   1. the mesh is valid (laws 1-5 of `Tin`);
+///   2. every vertex of the chain is within `reach_of_rounding` of the input segment;
+///   3. no triangle changed that the segment does not meet, but for swaps inside their facets.
+/// Where no mesh of doubles can do that, the march stops with NotRepresentable; the caller rolls
+/// back. It ends: each step is nearer to the segment's end, and a budget on steps stands behind
+/// that for the cases in which rounding decides.
+class March {
+  public:
+    March(Surgery& surgery, const MarchLimits& limits);
+
+    /// Begins a path at its first point. Costs a location.
+    void begin(std::size_t path, Point2 start);
+    /// Integrates the segment from where the march stands to `end`. Requires: begin was called, and
+    /// end differs from the position before. False: stopped, see `error`.
+    bool advance(Point2 end);
+    /// Ends the path: closes what runs outside.
+    void finish();
+
+    const MarchTally& tally() const { return tally_; }
+    MarchTally& tally() { return tally_; }
+    std::optional<Error>& error() { return error_; }
+    /// Vertices whose surroundings changed since the last call; the march forgets them.
+    std::vector<VertexId>& changed() { return changed_; }
+
+  private:
+    // march.cpp
+    VertexId place(const Location& location, Point2 p);
+    bool follow(const Departure& departure);
+    bool cross(Side exit);
+    bool reach(VertexId t, bool needs_swaps);
+    bool within_budget();
+    bool fail(ErrorCode code, const char* detail);
+
+    // crossing.cpp
+    bool cross_facet_edge(Side exit, bool needs_swaps);
+    std::optional<Point2> find_split(Side edge) const;
+    Point2 intersection(Side edge) const;
+    bool can_split(Side edge, Point2 p) const;
+    bool can_absorb(Side edge) const;
+    bool is_within_rounding(Point2 p) const;
+    void count_crossing(Side edge);
+    void measure(Point2 p);
+
+    // connect.cpp
+    bool connect(VertexId t);
+    std::optional<VertexId> collect_corridor(VertexId t);
+    std::optional<VertexId> way_around(Side edge, VertexId t) const;
+    bool clear_corridor(VertexId t);
+
+    // outside.cpp
+    struct Entry;
+    bool enter();
+    std::optional<Entry> next_entry() const;
+    bool enter_by(const Entry& entry);
+    void leave_mesh();
+    void close_outside();
+    double along(Point2 p) const;
+    bool was_visited(VertexId v) const;
+
+    Surgery& surgery_;
+    const Tin& tin_;
+    const MarchLimits& limits_;
+    double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
+    MarchTally tally_;
+    std::optional<Error> error_;
+    std::vector<VertexId> changed_;
+
+    VertexId at_;   ///< where the march stands; invalid: outside the mesh
+    Point2 start_;  ///< the input segment
+    Point2 end_;
+    std::uint64_t steps_ = 0;
+    std::size_t path_ = 0;
+    std::vector<Point2> outside_;      ///< the stretch outside that is being walked
+    std::vector<VertexId> boundary_visits_;  ///< where this segment met the boundary
+    std::vector<std::pair<VertexId, VertexId>> corridor_;  ///< edges between at_ and the next vertex
+};
+
+}  // namespace tinsmith::core

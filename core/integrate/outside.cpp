@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where paths run outside the mesh: concave outlines, holes, between components.
+#include <algorithm>
+#include <cmath>
+
+#include "core/integrate/march.hpp"
+#include "core/predicates/orientation.hpp"
+
+namespace tinsmith::core {
+
+using enum Orientation;
+
+/// A place where the segment meets the boundary coming from outside.
+struct March::Entry {
+    double along;  ///< growing along the segment
+    VertexId vertex;  ///< meets this vertex; or, when `edge` is valid, crosses the edge that it starts
+    Side edge;
+};
+
+/// From outside: goes to the segment's next meeting with the mesh. False: there is none, the
+/// segment ends outside (or the march stopped, see `error`).
+bool March::enter() {
+    while (!at_.valid()) {
+        if (!within_budget()) return false;
+        const std::optional<Entry> entry = next_entry();
+        if (!entry) {
+            outside_.push_back(end_);
+            return false;
+        }
+        if (!enter_by(*entry)) return false;
+    }
+    return true;
+}
+
+/// Position along the segment, as the projection on it: 0 at its start.
+double March::along(Point2 p) const {
+    return (p.x - start_.x) * (end_.x - start_.x) + (p.y - start_.y) * (end_.y - start_.y);
+}
+
+bool March::was_visited(VertexId v) const {
+    return std::find(boundary_visits_.begin(), boundary_visits_.end(), v) != boundary_visits_.end();
+}
+
+/// The nearest meeting that lies beyond the last one. Meetings within rounding of the last count as
+/// beyond it unless they are of the same edges and vertices: components may touch.
+std::optional<March::Entry> March::next_entry() const {
+    const double length = std::sqrt(along(end_));
+    const double rounding = reach_of_rounding_ * length;
+    double from = -rounding;
+    for (const VertexId v : boundary_visits_) from = std::max(from, along(tin_.plan(v)));
+
+    std::optional<Entry> best;
+    const auto offer = [&](Entry entry, bool is_known) {
+        if (entry.along < from - rounding || (is_known && entry.along <= from + rounding)) return;
+        if (!best || entry.along < best->along) best = entry;
+    };
+    for (const VertexId v : tin_.boundary().near(start_, end_)) {
+        if (v.index() >= tin_.vertex_count()) continue;
+        const Side edge = boundary_side_from(tin_, v);
+        if (!edge.valid()) continue;
+        const VertexId w = tin_.destination(edge);
+        const Point2 a = tin_.plan(v);
+        const Point2 b = tin_.plan(w);
+        const Orientation turn_a = orientation(start_, end_, a);
+        if (turn_a == Collinear) {
+            const bool is_within = is_ahead(start_, end_, a) && (a == end_ || is_ahead(end_, start_, a));
+            if (is_within || a == start_) offer({along(a), v, {}}, was_visited(v));
+            continue;
+        }
+        const Orientation turn_b = orientation(start_, end_, b);
+        if (turn_b == Collinear || turn_a == turn_b) continue;
+        // The mesh is on the left of a -> b: the segment enters from its right.
+        if (orientation(a, b, start_) != Clockwise || orientation(a, b, end_) == Clockwise) continue;
+        offer({along(intersection(edge)), v, edge}, was_visited(v) || was_visited(w));
+    }
+    return best;
+}
+
+/// Stands on the boundary at the entry. Where rounding forbids to split the edge there, at the end
+/// of it that the segment touches to within rounding.
+bool March::enter_by(const Entry& entry) {
+    VertexId v = entry.vertex;
+    if (entry.edge.valid()) {
+        const VertexId ends[] = {v, tin_.destination(entry.edge)};
+        const bool ends_here = orientation(tin_.plan(ends[0]), tin_.plan(ends[1]), end_) == Collinear;
+        const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
+        if (p) {
+            if (!ends_here) count_crossing(entry.edge);
+            v = place({Location::Kind::OnEdge, entry.edge, {}}, *p);
+        } else if (is_within_rounding(tin_.plan(ends[1]))) {
+            v = ends[1];
+        } else if (!is_within_rounding(tin_.plan(v))) {
+            return fail(ErrorCode::NotRepresentable,
+                        "no mesh of doubles holds this segment where it enters the mesh; move it");
+        }
+    }
+    measure(tin_.plan(v));
+    boundary_visits_.push_back(v);
+    tally_.met_mesh = true;
+    outside_.push_back(tin_.plan(v));
+    close_outside();
+    at_ = v;
+    return true;
+}
+
+/// Leaves the mesh from the vertex where the march stands.
+void March::leave_mesh() {
+    boundary_visits_.push_back(at_);
+    outside_.assign(1, tin_.plan(at_));
+    at_ = {};
+}
+
+/// Lists the stretch outside (or the path's only point), unless it is of no length, which happens
+/// where components touch.
+void March::close_outside() {
+    const bool has_length = outside_.size() == 1 || std::any_of(outside_.begin(), outside_.end(),
+                                        [this](Point2 p) { return p != outside_.front(); });
+    if (has_length) tally_.outside.push_back({path_, outside_});
+    outside_.clear();
+}
+
+}  // namespace tinsmith::core
