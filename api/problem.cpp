@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/problem.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include <nlohmann/json.hpp>
+
+namespace tinsmith::api {
+
+namespace {
+
+struct Row {
+    ProblemType type;
+    std::string_view word;
+    std::string_view title;
+    int status;
+};
+
+using enum ProblemType;
+
+constexpr std::array kTable{
+    Row{BadRequest, "bad-request", "The request is malformed", 400},
+    Row{MalformedBody, "malformed-body", "The body is not the format it claims to be", 400},
+    Row{InvalidContent, "invalid-content", "The body cannot be used as it is", 422},
+    Row{NotAvailable, "not-available", "Not available in this version", 422},
+    Row{UnknownParameter, "unknown-parameter", "Unknown parameter", 400},
+    Row{InvalidParameter, "invalid-parameter", "A parameter has a value it cannot have", 400},
+    Row{UnsupportedMediaType, "unsupported-media-type", "Content-Type is not supported", 415},
+    Row{UnsupportedEncoding, "unsupported-encoding", "Content-Encoding is not supported", 415},
+    Row{NotAcceptable, "not-acceptable", "No answer in an accepted media type", 406},
+    Row{LengthRequired, "length-required", "Content-Length is required", 411},
+    Row{BodyTooLarge, "too-large", "The request is too large", 413},
+    Row{PathTooLong, "path-too-long", "The path is too long", 414},
+    Row{TooManyHeaders, "too-many-headers", "Too many header fields", 431},
+    Row{RangeRefused, "range-refused", "The range cannot be served", 416},
+    Row{RequestTimeout, "request-timeout", "The body did not arrive in time", 408},
+    Row{NoSuchPath, "no-such-path", "Nothing is at this path", 404},
+    Row{NoSuchSession, "no-such-session", "There is no such session", 404},
+    Row{MethodNotAllowed, "method-not-allowed", "The method is not allowed here", 405},
+    Row{VersionMismatch, "version-mismatch", "The session has another version", 412},
+    Row{EditRefused, "edit-refused", "The mesh cannot be edited this way", 422},
+    Row{BudgetExceeded, "budget-exceeded", "The work would pass a limit", 422},
+    Row{TooManySessions, "too-many-sessions", "No room for another session", 429},
+    Row{OutOfMemory, "out-of-memory", "Not enough memory", 507},
+    Row{Stopped, "stopped", "The work was stopped", 503},
+    Row{Internal, "internal", "The server failed", 500},
+};
+
+const Row& row_of(ProblemType type) {
+    const auto* found = std::find_if(kTable.begin(), kTable.end(),
+                                     [type](const Row& row) { return row.type == type; });
+    return found == kTable.end() ? kTable.back() : *found;
+}
+
+ProblemType type_of_error(core::ErrorCode code) {
+    switch (code) {
+        case core::ErrorCode::MeshTooLarge:
+            return BodyTooLarge;
+        case core::ErrorCode::CrossingBudget:
+        case core::ErrorCode::TriangleBudget:
+            return BudgetExceeded;
+        case core::ErrorCode::Cancelled:
+            return Stopped;
+        case core::ErrorCode::StepBudget:
+            return Internal;
+        default:
+            return EditRefused;
+    }
+}
+
+nlohmann::ordered_json json_of_fault(const Fault& fault) {
+    nlohmann::ordered_json json{{"code", fault.code}, {"detail", fault.detail}};
+    if (!fault.pointer.empty()) json["pointer"] = fault.pointer;
+    if (fault.coordinate) json["coordinate"] = {(*fault.coordinate)[0], (*fault.coordinate)[1]};
+    if (fault.index) json["index"] = *fault.index;
+    return json;
+}
+
+std::string summary_of(const Faults& faults) {
+    if (faults.empty()) return {};
+    if (faults.size() == 1) return faults.front().detail;
+    const std::string count = faults.size() >= kMaxFaults ? "At least " + std::to_string(kMaxFaults)
+                                                          : std::to_string(faults.size());
+    return count + " faults, all in errors[]. The first: " + faults.front().detail;
+}
+
+}  // namespace
+
+std::string_view problem_word(ProblemType type) {
+    return row_of(type).word;
+}
+
+int problem_status(ProblemType type) {
+    return row_of(type).status;
+}
+
+ProblemType problem_of_status(int status) {
+    // Some statuses have several problems; the general one of each is the table's first.
+    const auto* found = std::find_if(kTable.begin(), kTable.end(),
+                                     [status](const Row& row) { return row.status == status; });
+    if (found != kTable.end()) return found->type;
+    return status < 500 ? BadRequest : Internal;
+}
+
+Problem problem_of_faults(FaultKind kind, Faults faults) {
+    ProblemType type = InvalidContent;
+    switch (kind) {
+        case FaultKind::Syntax:
+            type = MalformedBody;
+            break;
+        case FaultKind::Invalid:
+            type = InvalidContent;
+            break;
+        case FaultKind::TooLarge:
+            type = BodyTooLarge;
+            break;
+        case FaultKind::Unsupported:
+            type = NotAvailable;
+            break;
+    }
+    return {type, summary_of(faults), std::move(faults)};
+}
+
+Problem problem_of_errors(const core::Errors& errors, Faults faults) {
+    const ProblemType type = errors.empty() ? Internal : type_of_error(errors.front().code);
+    std::string detail = summary_of(faults);
+    if (type == Stopped) {
+        detail =
+            "The edit ran longer than this server allows, or the server is stopping; the "
+            "session is as it was. Send smaller parts, or try again.";
+    }
+    return {type, std::move(detail), std::move(faults)};
+}
+
+std::string write_problem(const Problem& problem, std::string_view instance,
+                          std::string_view request_id) {
+    const Row& row = row_of(problem.type);
+    nlohmann::ordered_json json{
+        {"type", "urn:tinsmith:problem:" + std::string(row.word)},
+        {"title", row.title},
+        {"status", row.status},
+        {"detail", problem.detail},
+        {"instance", instance},
+        {"request_id", request_id},
+    };
+    if (!problem.errors.empty()) {
+        auto& list = json["errors"] = nlohmann::ordered_json::array();
+        const std::size_t count = std::min(problem.errors.size(), kMaxFaults);
+        for (std::size_t i = 0; i < count; ++i)
+            list.push_back(json_of_fault(problem.errors[i]));
+    }
+    // The client's own bytes may stand in detail and instance: what is not UTF-8 is replaced.
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tinsmith::api

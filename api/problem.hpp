@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "api/fault.hpp"
+#include "core/types/result.hpp"
+
+namespace tinsmith::api {
+
+/// Every way in which a request can fail. The word of each, its title and its HTTP status stand in
+/// one table in problem.cpp; nowhere else is an error given a status number.
+enum class ProblemType {
+    BadRequest,            ///< the request's own form is broken
+    MalformedBody,         ///< the body is not the format it claims to be
+    InvalidContent,        ///< well formed, but not something that can be done
+    NotAvailable,          ///< a known wish that this version does not grant
+    UnknownParameter,      ///< a query parameter or member nobody knows
+    InvalidParameter,      ///< a known parameter with a value it cannot have
+    UnsupportedMediaType,  ///< Content-Type
+    UnsupportedEncoding,   ///< Content-Encoding
+    NotAcceptable,         ///< Accept
+    LengthRequired,
+    BodyTooLarge,
+    PathTooLong,
+    TooManyHeaders,
+    RangeRefused,
+    RequestTimeout,
+    NoSuchPath,
+    NoSuchSession,
+    MethodNotAllowed,
+    VersionMismatch,  ///< If-Match
+    EditRefused,      ///< the core refused: the place and reason are in errors[]
+    BudgetExceeded,   ///< the work would pass a limit; errors[] names it
+    TooManySessions,
+    OutOfMemory,
+    Stopped,  ///< the work was cancelled: time limit or shutdown
+    Internal,
+};
+
+/// What is answered instead of a result (RFC 9457).
+struct Problem {
+    ProblemType type = ProblemType::Internal;
+    std::string detail;  ///< what happened and what to do about it
+    Faults errors;       ///< all faults found, at most kMaxFaults are written
+};
+
+/// The stable word of a problem, "no-such-session"; its type is urn:tinsmith:problem:<word>.
+std::string_view problem_word(ProblemType type);
+
+/// The HTTP status of a problem.
+int problem_status(ProblemType type);
+
+/// The problem that best says what an HTTP status says, for refusals made below the handlers.
+ProblemType problem_of_status(int status);
+
+/// The problem for what a reader found wrong with a body.
+Problem problem_of_faults(FaultKind kind, Faults faults);
+
+/// The problem for what the core refused. Requires: `faults` tell the same errors in the
+/// caller's own places, one for one.
+Problem problem_of_errors(const core::Errors& errors, Faults faults);
+
+/// The body, application/problem+json. `instance` is the path of the request.
+std::string write_problem(const Problem& problem, std::string_view instance,
+                          std::string_view request_id);
+
+inline constexpr std::string_view kProblemMediaType = "application/problem+json";
+
+}  // namespace tinsmith::api

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "api/fault.hpp"
+#include "api/formats/gltf.hpp"
+#include "core/integrate/integrator.hpp"
+
+namespace tinsmith::api {
+
+/// A wish by name, and where it stands: a JSON Pointer into the body, or empty for the query.
+struct NamedOption {
+    std::string name;
+    std::string value;
+    std::string pointer;
+};
+
+/// What a polygons request asks for beside its geometry.
+struct PolygonOptions {
+    core::Improve improve = core::Improve::Strict;
+    core::Outside outside = core::Outside::Skip;
+    bool dry_run = false;
+    std::string crs;  ///< of the polygons, normalised; empty: the session's
+};
+
+/// The options of a polygons request that this version knows by name, granted or not.
+std::span<const std::string_view> polygon_option_names();
+
+/// Reads the options of a polygons request. The kind of refusal tells unknown or impossible values
+/// (Invalid) from wishes that are right but not granted yet (Unsupported). An option that is given
+/// twice, in the query and in the body, must say the same both times.
+Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options);
+
+/// The query parameters of a mesh request, granted or not.
+std::span<const std::string_view> mesh_option_names();
+
+/// Reads how a mesh is to be written. The unit is not the request's to say and stays the default.
+Parsed<GltfOptions> parse_mesh_options(std::span<const NamedOption> options);
+
+}  // namespace tinsmith::api

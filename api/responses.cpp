@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/responses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace tinsmith::api {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json) {
+    // Names come from clients: what is not UTF-8 is replaced, never thrown about.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json text_or_null(const std::string& text) {
+    return text.empty() ? Json(nullptr) : Json(text);
+}
+
+Json json_of_session(const SessionView& s) {
+    const core::Point3& low = s.bounds.min;
+    const core::Point3& high = s.bounds.max;
+    return {{"id", s.id},
+            {"name", s.name},
+            {"crs", text_or_null(s.crs)},
+            {"unit", s.unit},
+            {"version", s.version},
+            {"vertices", s.vertices},
+            {"triangles", s.triangles},
+            {"bounds", {low.x, low.y, low.z, high.x, high.y, high.z}},
+            {"polygons", s.polygons},
+            {"memory_bytes", s.memory_bytes}};
+}
+
+Json json_of_outside(const std::vector<core::OutsidePart>& parts) {
+    Json list = Json::array();
+    for (const core::OutsidePart& part : parts) {
+        Json points = Json::array();
+        for (const core::Point2& p : part.points)
+            points.push_back({p.x, p.y});
+        list.push_back({{"path", part.path}, {"points", std::move(points)}});
+    }
+    return list;
+}
+
+Json json_of_counts(const core::ShapeReport& shape) {
+    return {{"segments", shape.segments},
+            {"crossings", shape.crossings},
+            {"vertices_added", shape.vertices_added},
+            {"triangles_added", shape.triangles_added},
+            {"edges_swapped", shape.edges_swapped}};
+}
+
+Json json_of_shape(const std::string& id, const core::ShapeReport& shape) {
+    const core::AngleSummary& angle = shape.smallest_angle_deg;
+    Json json{{"id", id}};
+    json.update(json_of_counts(shape));
+    json["outside"] = json_of_outside(shape.outside);
+    json["max_vertical_deviation"] = shape.max_vertical_deviation;
+    json["max_plan_deviation"] = shape.max_plan_deviation;
+    // Draping takes every elevation from the surface: none of the ground moves.
+    json["max_elevation_change"] = 0.0;
+    json["smallest_angle_deg"] = {{"before", angle.before},
+                                  {"after", angle.after},
+                                  {"p1_before", angle.p1_before},
+                                  {"p1_after", angle.p1_after}};
+    return json;
+}
+
+core::ShapeReport total_of(const core::Report& report) {
+    core::ShapeReport total;
+    for (const core::ShapeReport& shape : report.shapes) {
+        total.segments += shape.segments;
+        total.crossings += shape.crossings;
+        total.vertices_added += shape.vertices_added;
+        total.triangles_added += shape.triangles_added;
+        total.edges_swapped += shape.edges_swapped;
+    }
+    return total;
+}
+
+/// Appends a number as the shortest text that reads back to the same value.
+template <typename Number>
+void append_number(std::string& out, Number value) {
+    std::array<char, 32> digits{};
+    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    out.append(digits.data(), end);
+}
+
+template <typename Number>
+void append_triple(std::string& out, Number a, Number b, Number c) {
+    out.push_back('[');
+    append_number(out, a);
+    out.push_back(',');
+    append_number(out, b);
+    out.push_back(',');
+    append_number(out, c);
+    out.push_back(']');
+}
+
+}  // namespace
+
+std::string write_session(const SessionView& session) {
+    return text_of(json_of_session(session));
+}
+
+std::string write_session_list(std::span<const SessionView> sessions) {
+    Json list = Json::array();
+    for (const SessionView& session : sessions)
+        list.push_back(json_of_session(session));
+    return text_of({{"sessions", std::move(list)}});
+}
+
+std::string write_limits(std::span<const std::pair<std::string_view, double>> limits) {
+    Json json = Json::object();
+    for (const auto& [name, value] : limits) {
+        const bool is_whole = value == std::floor(value) && std::fabs(value) < 9e15;
+        json[std::string(name)] = is_whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+    }
+    return text_of(json);
+}
+
+std::string write_report(const ReportView& view) {
+    Json polygons = Json::array();
+    const std::size_t count = std::min(view.polygon_ids.size(), view.report.shapes.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        polygons.push_back(json_of_shape(view.polygon_ids[i], view.report.shapes[i]));
+    }
+    const core::StageTimes& times = view.report.time_ms;
+    return text_of(
+        {{"session", view.session},
+         {"version", view.version},
+         {"dry_run", view.dry_run},
+         {"polygons", std::move(polygons)},
+         {"totals", json_of_counts(total_of(view.report))},
+         {"time_ms",
+          {{"locate", times.locate}, {"integrate", times.integrate}, {"improve", times.improve}}}});
+}
+
+std::string write_mesh_json(const core::MeshData& mesh) {
+    std::string out;
+    // About what real terrains need; the text grows beyond it where digits are many.
+    out.reserve(mesh.vertices.size() * 40 + mesh.triangles.size() * 24 + 64);
+    out += "{\"vertices\":[";
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (i > 0) out.push_back(',');
+        const core::Point3& p = mesh.vertices[i];
+        append_triple(out, p.x, p.y, p.z);
+    }
+    out += "],\"triangles\":[";
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (i > 0) out.push_back(',');
+        const auto& t = mesh.triangles[i];
+        append_triple(out, t[0], t[1], t[2]);
+    }
+    out += "]}\n";
+    return out;
+}
+
+}  // namespace tinsmith::api

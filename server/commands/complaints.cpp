@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/commands/complaints.hpp"
+
+#include <iostream>
+#include <limits>
+
+namespace tinsmith::server {
+
+void complain(const std::string& file, const api::Faults& faults) {
+    const auto digits = std::cerr.precision(std::numeric_limits<double>::max_digits10);
+    for (const api::Fault& fault : faults) {
+        std::cerr << "tinsmith: " << file << ": ";
+        if (!fault.pointer.empty()) std::cerr << fault.pointer << ": ";
+        std::cerr << fault.code << ": " << fault.detail;
+        if (fault.coordinate) {
+            std::cerr << " (at " << (*fault.coordinate)[0] << ", " << (*fault.coordinate)[1] << ")";
+        }
+        std::cerr << "\n";
+    }
+    if (faults.size() >= api::kMaxFaults) std::cerr << "tinsmith: there may be more faults\n";
+    std::cerr.precision(digits);
+}
+
+void complain(const std::string& text) {
+    std::cerr << "tinsmith: " << text << "\n";
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "api/crs.hpp"
+#include "api/formats/gltf.hpp"
+#include "api/responses.hpp"
+#include "server/commands/commands.hpp"
+#include "server/commands/complaints.hpp"
+#include "server/commands/progress.hpp"
+#include "server/file_io.hpp"
+#include "server/polygon_reading.hpp"
+#include "server/services.hpp"
+#include "server/terrain_reading.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+/// A command line is its owner's own work: the limits of a service do not apply, those of ids do.
+Limits command_limits() {
+    Limits limits;
+    limits.max_vertices = 400'000'000;
+    limits.max_triangles = core::kMaxTriangles;
+    limits.max_crossings = UINT64_MAX;
+    limits.max_edit_seconds = 1e9;
+    return limits;
+}
+
+std::optional<LoadedTerrain> read_terrain(const std::string& path, const Services& services) {
+    std::string error;
+    const auto bytes = read_file(path, error);
+    if (!bytes) {
+        complain(error);
+        return std::nullopt;
+    }
+    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), services.read_limits());
+    if (!terrain) {
+        complain(path, terrain.faults());
+        return std::nullopt;
+    }
+    return std::move(*terrain);
+}
+
+std::optional<PolygonWork> read_polygons(const IntegrateConfig& config, const Services& services,
+                                         const std::string& terrain_crs) {
+    std::string error;
+    const auto bytes = read_file(config.polygons, error);
+    if (!bytes) {
+        complain(error);
+        return std::nullopt;
+    }
+    auto work = read_polygon_work(*bytes, config.polygon_options, services.read_limits());
+    if (!work) {
+        complain(config.polygons, work.faults());
+        return std::nullopt;
+    }
+    if (const auto fault = crs_fault(*work, terrain_crs)) {
+        complain(config.polygons, {*fault});
+        return std::nullopt;
+    }
+    work->edit.want_mesh = true;
+    set_budgets(work->edit, services.limits, services.stopping);
+    return std::move(*work);
+}
+
+/// An empty path writes nothing.
+bool write_output(const std::string& path, std::string_view content) {
+    if (path.empty()) return true;
+    const std::string error = write_file_atomically(path, content);
+    if (!error.empty()) complain(error);
+    return error.empty();
+}
+
+int write_results(const IntegrateConfig& config, const Session& session,
+                  const PolygonResult& result, bool dry_run, api::GltfOptions options) {
+    if (!result.mesh) {
+        complain("not enough memory for a copy of the mesh");
+        return kExitRefused;
+    }
+    options.unit_to_metre = api::metres_per(session.facts().unit);
+    const auto written = api::write_glb(*result.mesh, options);
+    if (const auto* error = std::get_if<api::EncodeError>(&written)) {
+        complain(config.output + ": " + error->detail);
+        return kExitRefused;
+    }
+    const std::string report = api::write_report(
+        {session.facts().name, result.version, dry_run, result.polygon_ids, *result.report});
+    const bool done = write_output(config.output, std::get<api::GltfResult>(written).bytes) &&
+                      write_output(config.report, report);
+    return done ? kExitOk : kExitRefused;
+}
+
+}  // namespace
+
+int run_integrate(const IntegrateConfig& config) {
+    Progress progress(4);
+    const Services services(command_limits());
+    auto mesh_options = api::parse_mesh_options(config.mesh_options);
+    if (!mesh_options) {
+        complain("options", mesh_options.faults());
+        return kExitUsage;
+    }
+    progress.next("reading the terrain");
+    auto terrain = read_terrain(config.terrain, services);
+    if (!terrain) return kExitRefused;
+    progress.next("reading the polygons");
+    auto work = read_polygons(config, services, terrain->about.crs);
+    if (!work) return kExitRefused;
+
+    progress.next("integrating");
+    const std::string name = std::filesystem::path(config.terrain).stem().string();
+    Session session({name, "0", name, terrain->about.crs, terrain->about.unit},
+                    std::move(terrain->tin));
+    const bool dry_run = work->edit.dry_run;
+    const auto outcome = session.integrate(std::move(work->edit));
+    if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
+        progress.clear();
+        complain(config.polygons, faults_of(*errors, work->shapes));
+        return kExitRefused;
+    }
+    progress.next("writing");
+    return write_results(config, session, std::get<PolygonResult>(outcome), dry_run, *mesh_options);
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+namespace tinsmith::server {
+
+namespace {
+
+constexpr const char* kTopFooter =
+    "Examples:\n"
+    "  tinsmith serve --demo\n"
+    "  tinsmith integrate terrain.tif parcels.geojson -o out.glb --report report.json\n"
+    "  tinsmith check mesh.json\n\n"
+    "Exit codes: 0 done, 1 the input was refused, 2 wrong usage.";
+
+constexpr const char* kServeFooter =
+    "Every flag is also an environment variable, TINSMITH_PORT for --port, and a line in the\n"
+    "section [serve] of the file given by --config:\n"
+    "  [serve]\n"
+    "  port = 9000\n"
+    "  demo = true\n"
+    "The command line comes first, then the file, then the environment.\n\n"
+    "Examples:\n"
+    "  tinsmith serve --demo\n"
+    "  tinsmith serve --port 0 --port-file /run/tinsmith.port\n"
+    "  TINSMITH_MAX_SESSIONS=8 tinsmith serve";
+
+constexpr const char* kIntegrateFooter =
+    "TERRAIN is a GeoTIFF of elevations or a JSON mesh or grid, POLYGONS is GeoJSON in the\n"
+    "terrain's coordinates.\n\n"
+    "Examples:\n"
+    "  tinsmith integrate terrain.tif lake.geojson -o out.glb --report report.json\n"
+    "  tinsmith integrate mesh.json road.geojson -o out.glb --improve none --outside reject";
+
+/// "max_body_bytes" as a flag, "--max-body-bytes".
+std::string flag_of(std::string name) {
+    std::replace(name.begin(), name.end(), '_', '-');
+    return "--" + name;
+}
+
+std::string variable_of(std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(), [](char c) {
+        return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    });
+    return "TINSMITH_" + name;
+}
+
+template <typename T>
+CLI::Option* add_setting(CLI::App& app, const std::string& name, T& value,
+                         const std::string& text) {
+    return app.add_option(flag_of(name), value, text)
+        ->envname(variable_of(name))
+        ->capture_default_str();
+}
+
+void add_limits(CLI::App& app, Limits& limits) {
+    const auto bytes = CLI::AsSizeValue(false);
+    add_setting(app, "max_body_bytes", limits.max_body_bytes, "Largest request body (256MB, 1GB)")
+        ->transform(bytes);
+    add_setting(app, "max_memory_bytes", limits.max_memory_bytes, "Of all meshes together")
+        ->transform(bytes);
+    add_setting(app, "max_sessions", limits.max_sessions, "Sessions at the same time");
+    add_setting(app, "max_vertices", limits.max_vertices, "Vertices of a terrain");
+    add_setting(app, "max_triangles", limits.max_triangles, "Triangles of a session");
+    add_setting(app, "max_crossings", limits.max_crossings, "Edges crossed by one request");
+    add_setting(app, "max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
+        ->check(CLI::PositiveNumber);
+}
+
+CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
+    CLI::App* serve = app.add_subcommand("serve", "Serve terrains over HTTP");
+    serve->footer(kServeFooter);
+    HttpOptions& http = config.http;
+    add_setting(*serve, "host", http.host, "Address to listen on");
+    add_setting(*serve, "port", http.port, "Port to listen on; 0: any free one")
+        ->check(CLI::Range(0, 65535));
+    add_setting(*serve, "port_file", config.port_file, "Write the port here once it is open");
+    serve->add_flag("--demo", config.demo, "Load the bundled terrain as session \"demo\"")
+        ->envname("TINSMITH_DEMO");
+    add_setting(*serve, "demo_terrain", config.demo_terrain, "Load this terrain for --demo");
+    add_setting(*serve, "threads", http.threads, "Connections served at the same time")
+        ->check(CLI::Range(2, 1024));
+    add_limits(*serve, http.limits);
+    static const std::map<std::string, LogLevel> levels{{"debug", LogLevel::Debug},
+                                                        {"info", LogLevel::Info},
+                                                        {"warning", LogLevel::Warning},
+                                                        {"error", LogLevel::Error},
+                                                        {"off", LogLevel::Off}};
+    serve->add_option("--log-level", config.log_level, "debug, info, warning, error or off")
+        ->envname("TINSMITH_LOG_LEVEL")
+        ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case));
+    return serve;
+}
+
+/// Options of requests as flags of the same names; the values are judged by the requests' parser.
+void add_request_options(CLI::App& app, std::span<const std::string_view> names,
+                         const std::string& group, std::vector<api::NamedOption>& out) {
+    for (const std::string_view name : names) {
+        const std::string key(name);
+        app.add_option_function<std::string>(
+               flag_of(key),
+               [&out, key](const std::string& value) {
+                   out.push_back({key, value, {}});
+               },
+               "As " + key + "= of the request")
+            ->group(group);
+    }
+}
+
+CLI::App* add_integrate(CLI::App& app, IntegrateConfig& config) {
+    CLI::App* integrate =
+        app.add_subcommand("integrate", "Cut polygons into a terrain and write it as GLB");
+    integrate->footer(kIntegrateFooter);
+    integrate->add_option("TERRAIN", config.terrain, "GeoTIFF or JSON")->required();
+    integrate->add_option("POLYGONS", config.polygons, "GeoJSON")->required();
+    integrate->add_option("-o,--output", config.output, "The mesh as GLB")->required();
+    integrate->add_option("--report", config.report, "The report as JSON");
+    add_request_options(*integrate, api::polygon_option_names(), "Polygons",
+                        config.polygon_options);
+    add_request_options(*integrate, api::mesh_option_names(), "Mesh", config.mesh_options);
+    return integrate;
+}
+
+CLI::App* add_check(CLI::App& app, CheckConfig& config) {
+    CLI::App* check = app.add_subcommand("check", "List every broken law of a mesh");
+    check->add_option("MESH", config.mesh, "GeoTIFF or JSON")->required();
+    return check;
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+    CLI::App app{"Tinsmith edits terrain meshes: it cuts polygons into them over HTTP."};
+    app.footer(kTopFooter);
+    app.set_version_flag("--version", std::string("tinsmith ") + TINSMITH_VERSION);
+    app.set_config("--config", "", "Settings as TOML, a section for each command");
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    app.require_subcommand(1);
+    app.fallthrough();
+    ServeConfig serve;
+    IntegrateConfig integrate;
+    CheckConfig check;
+    const CLI::App* serve_command = add_serve(app, serve);
+    const CLI::App* integrate_command = add_integrate(app, integrate);
+    add_check(app, check);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? kExitOk : kExitUsage;
+    }
+    if (serve_command->parsed()) return serve;
+    if (integrate_command->parsed()) return integrate;
+    return check;
+}
+
+}  // namespace tinsmith::server

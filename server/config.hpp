@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "api/requests.hpp"
+#include "server/http_server.hpp"
+#include "server/log.hpp"
+
+namespace tinsmith::server {
+
+/// `tinsmith serve`.
+struct ServeConfig {
+    HttpOptions http;
+    std::string port_file;  ///< empty: none
+    bool demo = false;
+    std::string demo_terrain;  ///< empty: the bundled one
+    LogLevel log_level = LogLevel::Info;
+};
+
+/// `tinsmith integrate`: the options go through the same parsers as those of a request.
+struct IntegrateConfig {
+    std::string terrain;
+    std::string polygons;
+    std::string output;
+    std::string report;  ///< empty: none
+    std::vector<api::NamedOption> polygon_options;
+    std::vector<api::NamedOption> mesh_options;
+};
+
+/// `tinsmith check`.
+struct CheckConfig {
+    std::string mesh;
+};
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitRefused = 1;  ///< the input or the surroundings do not allow it
+inline constexpr int kExitUsage = 2;    ///< the command line makes no sense
+
+/// What to do, or the exit code where that is done already (help, version, wrong usage).
+using Command = std::variant<int, ServeConfig, IntegrateConfig, CheckConfig>;
+
+/// Reads command line, configuration file and environment, in this order of precedence. Writes
+/// help to standard output and complaints to standard error.
+Command parse_command_line(int argc, const char* const* argv);
+
+}  // namespace tinsmith::server

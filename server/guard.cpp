@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/guard.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+
+namespace tinsmith::server {
+
+namespace {
+
+using api::Problem;
+using api::ProblemType;
+
+std::size_t count_headers(const Request& request, std::string_view name) {
+    return static_cast<std::size_t>(
+        std::count_if(request.headers.begin(), request.headers.end(),
+                      [name](const NameValue& header) { return header.first == name; }));
+}
+
+/// Digits only: "+5", "0x5", "5, 5" and " 5" are read differently by different programs.
+std::optional<std::uint64_t> parse_length(std::string_view text) {
+    std::uint64_t length = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, length);
+    if (text.empty() || error != std::errc() || stop != end) return std::nullopt;
+    return length;
+}
+
+std::optional<Problem> check_length(const Request& request, const Limits& limits) {
+    const std::size_t count = count_headers(request, "content-length");
+    if (count > 1) return Problem{ProblemType::BadRequest, "Send one Content-Length header.", {}};
+    if (count == 0) {
+        if (!takes_body(request.method)) return std::nullopt;
+        return Problem{ProblemType::LengthRequired,
+                       "Send the body with a Content-Length header (curl does so with -d and "
+                       "--data-binary; an empty body is Content-Length: 0).",
+                       {}};
+    }
+    const auto length = parse_length(*request.header("content-length"));
+    if (!length) {
+        return Problem{ProblemType::BadRequest, "Content-Length is not a decimal number.", {}};
+    }
+    if (*length > 0 && !takes_body(request.method)) {
+        return Problem{ProblemType::BadRequest,
+                       "A " + request.method + " request takes no body here: leave it out.",
+                       {}};
+    }
+    if (*length > limits.max_body_bytes) {
+        return Problem{ProblemType::BodyTooLarge,
+                       "The body has " + std::to_string(*length) +
+                           " bytes, the limit max_body_bytes is " +
+                           std::to_string(limits.max_body_bytes) +
+                           ". Send less, or start the server with a larger --max-body-bytes.",
+                       {}};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool takes_body(const std::string& method) {
+    return method == "POST" || method == "PUT" || method == "PATCH";
+}
+
+std::optional<Problem> check_request_head(const Request& request, const Limits& limits) {
+    if (request.path.size() > kMaxPathBytes) {
+        return Problem{ProblemType::PathTooLong,
+                       "The path is longer than " + std::to_string(kMaxPathBytes) + " bytes.",
+                       {}};
+    }
+    if (request.headers.size() > kMaxHeaders) {
+        return Problem{ProblemType::TooManyHeaders,
+                       "Send at most " + std::to_string(kMaxHeaders) + " headers.",
+                       {}};
+    }
+    if (request.header("transfer-encoding")) {
+        return Problem{ProblemType::LengthRequired,
+                       "Transfer-Encoding is not read here: send a Content-Length instead (with "
+                       "curl, -H 'Transfer-Encoding:' or a body from a file).",
+                       {}};
+    }
+    if (request.header("content-encoding")) {
+        return Problem{ProblemType::UnsupportedEncoding,
+                       "Compressed bodies are not read here: send the body as it is.",
+                       {}};
+    }
+    if (const auto range = request.header("range");
+        range &&
+        (range->find(',') != std::string_view::npos || count_headers(request, "range") > 1)) {
+        return Problem{ProblemType::RangeRefused, "Ask for one range, or for the whole.", {}};
+    }
+    if (count_headers(request, "host") > 1) {
+        return Problem{ProblemType::BadRequest, "Send one Host header.", {}};
+    }
+    return check_length(request, limits);
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tinsmith::server {
+
+using NameValue = std::pair<std::string, std::string>;
+
+/// One HTTP request as handlers see it: plain data, no socket, no library type.
+/// Header names are lower-case; the query keeps the client's order and is percent-decoded.
+/// `path` stays as it was sent (still encoded), because only the router knows its segments.
+struct Request {
+    std::string method;
+    std::string path;
+    std::vector<NameValue> query;
+    std::vector<NameValue> headers;
+    std::string body;
+    std::string remote_address;
+    std::string id;  ///< the request id that every answer carries
+
+    /// The first header of that lower-case name.
+    std::optional<std::string_view> header(std::string_view name) const {
+        for (const auto& [key, value] : headers) {
+            if (key == name) return value;
+        }
+        return std::nullopt;
+    }
+
+    /// The query parameter of that name; the router has refused repeated ones.
+    std::optional<std::string_view> parameter(std::string_view name) const {
+        for (const auto& [key, value] : query) {
+            if (key == name) return value;
+        }
+        return std::nullopt;
+    }
+};
+
+/// One HTTP answer. An empty body is sent with no content type.
+struct Response {
+    int status = 200;
+    std::string content_type;
+    std::vector<NameValue> headers;
+    std::string body;
+    bool close = false;  ///< end the connection: what follows on it cannot be trusted
+
+    Response& with(std::string name, std::string value) {
+        headers.emplace_back(std::move(name), std::move(value));
+        return *this;
+    }
+};
+
+}  // namespace tinsmith::server

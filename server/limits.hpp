@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tinsmith::server {
+
+/// What one service may be asked for. Every refusal names the limit it met by these names.
+struct Limits {
+    std::size_t max_body_bytes = std::size_t{256} << 20;
+    std::size_t max_sessions = 64;
+    std::size_t max_memory_bytes = std::size_t{8} << 30;  ///< of all meshes together
+    std::size_t max_vertices = 10'000'000;                ///< of one session
+    std::size_t max_triangles = 20'000'000;               ///< of one session
+    std::uint64_t max_crossings = 50'000'000;             ///< of one request
+    double max_edit_seconds = 60.0;                       ///< of one request
+};
+
+/// Shape of a request before its body is read; see `check_request`.
+inline constexpr std::size_t kMaxPathBytes = 512;
+inline constexpr std::size_t kMaxHeaders = 100;
+inline constexpr std::size_t kMaxQueryParameters = 64;
+
+}  // namespace tinsmith::server

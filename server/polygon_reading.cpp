@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/polygon_reading.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "api/crs.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The options of the body stand after those from outside; the parser refuses contradictions.
+std::vector<api::NamedOption> all_options(std::vector<api::NamedOption> given,
+                                          const api::PolygonRequest& request) {
+    for (const auto& [name, value] : request.options) {
+        given.push_back({name, value, "/tinsmith/" + name});
+    }
+    return given;
+}
+
+PolygonEdit edit_of(const std::vector<api::RequestedShape>& shapes,
+                    const api::PolygonOptions& options) {
+    PolygonEdit edit;
+    edit.dry_run = options.dry_run;
+    edit.options.improve = options.improve;
+    edit.options.outside = options.outside;
+    for (const api::RequestedShape& shape : shapes) {
+        edit.shapes.push_back(shape.shape);
+        edit.client_ids.push_back(shape.id);
+        edit.properties.push_back(shape.properties);
+    }
+    return edit;
+}
+
+/// The body's own claim and the option's must be one.
+bool is_contradiction(const std::string& claimed, const std::string& option) {
+    return !claimed.empty() && !option.empty() && claimed != option;
+}
+
+std::string pointer_of(const core::ErrorPlace& place,
+                       const std::vector<api::RequestedShape>& shapes) {
+    if (!place.shape || *place.shape >= shapes.size()) return {};
+    const api::RequestedShape& shape = shapes[*place.shape];
+    const auto& paths = shape.shape.paths;
+    const bool is_point = place.path && place.point && *place.path < paths.size() &&
+                          *place.point < paths[*place.path].points.size();
+    return is_point ? api::coordinate_pointer(shape, *place.path, *place.point) : shape.pointer;
+}
+
+}  // namespace
+
+api::Parsed<PolygonWork> read_polygon_work(std::string_view body,
+                                           std::vector<api::NamedOption> given,
+                                           const api::ReadLimits& limits) {
+    auto request = api::read_geojson(body, limits);
+    if (!request) return {request.kind(), std::move(request.faults())};
+    auto options = api::parse_polygon_options(all_options(std::move(given), *request));
+    if (!options) return {options.kind(), std::move(options.faults())};
+
+    // The reader may hand the name on as it was written; two spellings are one system.
+    const std::string claimed = api::normalise_crs(request->crs).value_or(request->crs);
+    if (is_contradiction(claimed, options->crs)) {
+        return {api::FaultKind::Invalid,
+                api::Fault{"CONTRADICTION",
+                           "The body's crs is " + claimed + ", the option crs is " + options->crs +
+                               ": give one, or the same twice.",
+                           "/crs"}};
+    }
+    PolygonWork work;
+    work.edit = edit_of(request->shapes, *options);
+    work.shapes = std::move(request->shapes);
+    work.crs = options->crs.empty() ? claimed : options->crs;
+    if (options->crs.empty() && !claimed.empty()) work.crs_pointer = "/crs";
+    return work;
+}
+
+std::optional<api::Fault> crs_fault(const PolygonWork& work, const std::string& session_crs) {
+    if (work.crs.empty() || work.crs == session_crs) return std::nullopt;
+    return api::Fault{"CRS_MISMATCH",
+                      "The polygons are in " + work.crs + ", the terrain is in " +
+                          (session_crs.empty() ? std::string("no named system") : session_crs) +
+                          ". Transform them first, or leave crs out if their numbers are the "
+                          "terrain's.",
+                      work.crs_pointer};
+}
+
+api::Faults faults_of(const core::Errors& errors, const std::vector<api::RequestedShape>& shapes) {
+    api::Faults faults;
+    for (const core::Error& error : errors) {
+        api::Fault fault{std::string(core::code_name(error.code)), error.detail,
+                         pointer_of(error.place, shapes)};
+        if (error.place.position) {
+            fault.coordinate = {error.place.position->x, error.place.position->y};
+        }
+        faults.push_back(std::move(fault));
+    }
+    return faults;
+}
+
+void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping) {
+    const auto start = Clock::now();
+    const auto most = std::chrono::duration<double>(limits.max_edit_seconds);
+    edit.max_triangles = limits.max_triangles;
+    edit.options.max_crossings = limits.max_crossings;
+    edit.options.clock_ms = [start] {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    };
+    edit.options.cancelled = [start, most, &stopping] {
+        return stopping.load(std::memory_order_relaxed) || Clock::now() - start > most;
+    };
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/random_id.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace tinsmith::server {
+
+std::string random_hex(std::size_t bytes) {
+    static constexpr std::string_view kDigits = "0123456789abcdef";
+    std::random_device source;  // getrandom(2) or the processor's own generator
+    std::string out;
+    out.reserve(bytes * 2);
+    for (std::size_t i = 0; i < bytes; ++i) {
+        const auto byte = source() & 0xffU;
+        out.push_back(kDigits[byte >> 4]);
+        out.push_back(kDigits[byte & 15U]);
+    }
+    return out;
+}
+
+std::string random_uuid() {
+    std::string id = random_hex(16);
+    id[12] = '4';                                            // version
+    id[16] = "89ab"[static_cast<std::size_t>(id[16]) & 3U];  // variant
+    for (const std::size_t at : {8U, 13U, 18U, 23U})
+        id.insert(at, 1, '-');
+    return id;
+}
+
+bool is_sane_id(std::string_view id) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '.' || c == '_' || c == '-';
+    };
+    return !id.empty() && id.size() <= 64 && std::all_of(id.begin(), id.end(), is_plain);
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "api/problem.hpp"
+#include "server/http_message.hpp"
+
+namespace tinsmith::server {
+
+inline constexpr const char* kJson = "application/json";
+inline constexpr const char* kGlb = "model/gltf-binary";
+
+/// 200 with a body.
+Response ok(std::string content_type, std::string body);
+/// 201 with a body and where the new thing is.
+Response created(std::string location, std::string content_type, std::string body);
+/// 204: done, nothing to say.
+Response no_content();
+/// The problem as application/problem+json, its status from the table of problems.
+Response refuse(const Request& request, const api::Problem& problem);
+Response refuse(const Request& request, api::ProblemType type, std::string detail);
+
+}  // namespace tinsmith::server

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/router.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "server/log.hpp"
+#include "server/reply.hpp"
+#include "server/target.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+bool is_argument(std::string_view segment) {
+    return segment.starts_with('{');
+}
+
+bool matches(const std::vector<std::string>& pattern, const std::vector<std::string>& path) {
+    return std::equal(pattern.begin(), pattern.end(), path.begin(), path.end(),
+                      [](const std::string& want, const std::string& have) {
+                          return is_argument(want) ? !have.empty() : want == have;
+                      });
+}
+
+PathArguments arguments_of(const std::vector<std::string>& pattern,
+                           const std::vector<std::string>& path) {
+    PathArguments arguments;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+        if (is_argument(pattern[i])) arguments.push_back(path[i]);
+    }
+    return arguments;
+}
+
+std::string joined(std::span<const std::string_view> words) {
+    std::string out;
+    for (const std::string_view word : words) {
+        if (!out.empty()) out += ", ";
+        out += word;
+    }
+    return out;
+}
+
+/// All faults of the query at once; empty: none.
+api::Faults query_faults(const Request& request, std::span<const std::string_view> known) {
+    api::Faults faults;
+    const auto& query = request.query;
+    for (std::size_t i = 0; i < query.size() && faults.size() < api::kMaxFaults; ++i) {
+        const std::string& name = query[i].first;
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            faults.push_back({"UNKNOWN_PARAMETER",
+                              "\"" + name + "\" is not a parameter here; " +
+                                  (known.empty() ? std::string("there are none.")
+                                                 : "known are: " + joined(known) + "."),
+                              {}});
+            continue;
+        }
+        const bool repeated =
+            std::any_of(query.begin(), query.begin() + static_cast<std::ptrdiff_t>(i),
+                        [&name](const NameValue& earlier) { return earlier.first == name; });
+        if (repeated) {
+            faults.push_back({"REPEATED_PARAMETER", "\"" + name + "\" is given twice.", {}});
+        }
+    }
+    return faults;
+}
+
+}  // namespace
+
+Router::Router(std::vector<Route> routes) {
+    for (Route& route : routes) {
+        auto segments = split_path(route.pattern).value_or(std::vector<std::string>{});
+        entries_.push_back({std::move(route), std::move(segments)});
+    }
+}
+
+Response Router::handle(const Request& request) const {
+    Response response;
+    try {
+        response = dispatch(request);
+    } catch (const std::bad_alloc&) {
+        response = refuse(request, api::ProblemType::OutOfMemory,
+                          "The server has no memory left for this; nothing was changed. Delete "
+                          "sessions that are not needed, or send less.");
+    } catch (const std::exception& error) {
+        log_error("request " + request.id + " failed: " + error.what());
+        response = refuse(request, api::ProblemType::Internal,
+                          "A defect of the server, not of the request. Report it with the request "
+                          "id; the log has the details.");
+    }
+    response.with("X-Request-Id", request.id);
+    return response;
+}
+
+std::vector<const Router::Entry*> Router::entries_at(
+    const std::vector<std::string>& segments) const {
+    std::vector<const Entry*> found;
+    for (const Entry& entry : entries_) {
+        if (matches(entry.segments, segments)) found.push_back(&entry);
+    }
+    return found;
+}
+
+Response Router::dispatch(const Request& request) const {
+    const auto segments = split_path(request.path);
+    const auto entries = segments ? entries_at(*segments) : std::vector<const Entry*>{};
+    if (entries.empty()) {
+        return refuse(request, api::ProblemType::NoSuchPath,
+                      "Nothing is served at this path. The sessions are at /v1/sessions.");
+    }
+    const std::string wanted = request.method == "HEAD" ? "GET" : request.method;
+    std::string allow = "OPTIONS";
+    for (const Entry* entry : entries) {
+        if (entry->route.method == wanted) {
+            auto faults = query_faults(request, entry->route.parameters);
+            if (faults.empty()) {
+                return entry->route.handler(request, arguments_of(entry->segments, *segments));
+            }
+            std::string detail = faults.front().detail;
+            return refuse(request, {api::ProblemType::UnknownParameter, std::move(detail),
+                                    std::move(faults)});
+        }
+        allow += ", " + entry->route.method;
+        if (entry->route.method == "GET") allow += ", HEAD";
+    }
+    Response response = request.method == "OPTIONS"
+                            ? no_content()
+                            : refuse(request, api::ProblemType::MethodNotAllowed,
+                                     "This path answers to: " + allow + ".");
+    response.with("Allow", allow);
+    return response;
+}
+
+}  // namespace tinsmith::server

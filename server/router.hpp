@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/http_message.hpp"
+
+namespace tinsmith::server {
+
+/// What stood in the path where the pattern has "{...}", in order.
+using PathArguments = std::vector<std::string>;
+
+using Handler = std::function<Response(const Request&, const PathArguments&)>;
+
+/// One line of the route table.
+struct Route {
+    std::string method;
+    std::string pattern;                             ///< "/v1/sessions/{id}/mesh"
+    std::span<const std::string_view> parameters{};  ///< query parameters it knows
+    Handler handler;
+};
+
+/// Finds the handler of a request and calls it.
+///
+/// Laws: a path nobody has is 404; a method the path does not have is 405 with Allow; HEAD is
+/// answered as GET (the transport drops the body) and OPTIONS with Allow; unknown and repeated
+/// query parameters are refused by name; a handler that throws makes a 500 (507 when memory ran
+/// out) that tells nothing of the exception; every answer carries X-Request-Id.
+/// No regular expressions: matching is linear in the path.
+class Router {
+  public:
+    explicit Router(std::vector<Route> routes);
+
+    Response handle(const Request& request) const;
+
+  private:
+    struct Entry {
+        Route route;
+        std::vector<std::string> segments;
+    };
+
+    Response dispatch(const Request& request) const;
+    std::vector<const Entry*> entries_at(const std::vector<std::string>& segments) const;
+
+    std::vector<Entry> entries_;
+};
+
+}  // namespace tinsmith::server

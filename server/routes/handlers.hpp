@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/http_message.hpp"
+#include "server/router.hpp"
+#include "server/services.hpp"
+
+namespace tinsmith::server {
+
+// Each is one line of the route table: parse, check, call, write. None needs a socket.
+
+// service_routes.cpp
+Response get_welcome(Services&, const Request&, const PathArguments&);
+Response get_health(Services&, const Request&, const PathArguments&);  ///< takes no lock
+Response get_limits(Services&, const Request&, const PathArguments&);
+
+// session_routes.cpp
+Response list_sessions(Services&, const Request&, const PathArguments&);
+Response create_session(Services&, const Request&, const PathArguments&);
+Response get_session(Services&, const Request&, const PathArguments&);
+Response delete_session(Services&, const Request&, const PathArguments&);
+
+// polygon_routes.cpp
+Response integrate_polygons(Services&, const Request&, const PathArguments&);
+
+// mesh_routes.cpp
+Response get_mesh(Services&, const Request&, const PathArguments&);
+Response get_mesh_glb(Services&, const Request&, const PathArguments&);
+Response get_mesh_json(Services&, const Request&, const PathArguments&);
+
+}  // namespace tinsmith::server

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <utility>
+
+#include "api/crs.hpp"
+#include "api/formats/geojson.hpp"
+#include "api/media_type.hpp"
+#include "api/responses.hpp"
+#include "server/polygon_reading.hpp"
+#include "server/reply.hpp"
+#include "server/routes/handlers.hpp"
+#include "server/routes/route_support.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kGlb};
+
+std::optional<Response> refusal_of_type(const Request& request) {
+    const std::string type = api::media_type_of(request.header("content-type").value_or(""));
+    if (type == "application/json" || type == "application/geo+json") return std::nullopt;
+    return refuse_media_type(request, type, "polygons", "application/geo+json, application/json",
+                             "-H 'Content-Type: application/json'");
+}
+
+Response send_report(const Session& session, const PolygonResult& result, bool dry_run) {
+    return ok(kJson, api::write_report({session.facts().id, result.version, dry_run,
+                                        result.polygon_ids, *result.report}));
+}
+
+/// The edit is made even where its mesh cannot be sent, and the answer has to say so.
+Response send_mesh_after(const Request& request, const Session& session,
+                         const PolygonResult& result) {
+    if (!result.mesh) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "The edit was made (version " + std::to_string(result.version) +
+                          "), but there is no memory to send the mesh: get it later.");
+    }
+    api::GltfOptions options;
+    options.unit_to_metre = api::metres_per(session.facts().unit);
+    return glb_response(request, *result.mesh, options);
+}
+
+}  // namespace
+
+Response integrate_polygons(Services& services, const Request& request,
+                            const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    Session& session = *std::get<0>(found);
+    if (auto refusal = refusal_of_type(request)) return *refusal;
+    const auto type = require_media_type(request, kAnswerTypes);
+    if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+    const auto expected = require_if_match(request, session);
+    if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
+
+    auto work = read_polygon_work(request.body, options_of_query(request), services.read_limits());
+    if (!work) return refuse_options(request, work.kind(), std::move(work.faults()));
+    if (const auto fault = crs_fault(*work, session.facts().crs)) {
+        return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, {*fault}));
+    }
+
+    const bool as_glb = std::get<0>(type) == 1;
+    work->edit.want_mesh = as_glb;
+    work->edit.expected_version = std::get<0>(expected);
+    set_budgets(work->edit, services.limits, services.stopping);
+    const bool dry_run = work->edit.dry_run;
+    auto outcome = session.integrate(std::move(work->edit));
+    if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
+        return version_mismatch(request, session, mismatch->current);
+    }
+    if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
+        return refuse(request, api::problem_of_errors(*errors, faults_of(*errors, work->shapes)));
+    }
+    const auto& result = std::get<PolygonResult>(outcome);
+    Response response =
+        as_glb ? send_mesh_after(request, session, result) : send_report(session, result, dry_run);
+    return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "api/fault.hpp"
+#include "api/formats/gltf.hpp"
+#include "api/requests.hpp"
+#include "server/http_message.hpp"
+#include "server/services.hpp"
+
+namespace tinsmith::server {
+
+/// A value on the way through a handler, or the answer that ends it.
+template <typename T>
+using Step = std::variant<T, Response>;
+
+/// The session that the path names first, or 404.
+Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
+                                               const std::string& id);
+
+/// The version that If-Match asks for; nothing where there is no If-Match or it is "*". 412 where
+/// it names none of this session's life.
+Step<std::optional<std::uint64_t>> require_if_match(const Request& request, const Session& session);
+
+/// 412, with the current version as ETag.
+Response version_mismatch(const Request& request, const Session& session, std::uint64_t current);
+
+/// Which of the offers the Accept header prefers, or 406 naming all of them.
+Step<std::size_t> require_media_type(const Request& request,
+                                     std::span<const std::string_view> offers);
+
+/// 415 that says what is read here and, to those who come with curl, what to add.
+Response refuse_media_type(const Request& request, const std::string& type, std::string_view what,
+                           std::string_view known, std::string_view curl_hint);
+
+/// The query as options, with no place in the body.
+std::vector<api::NamedOption> options_of_query(const Request& request);
+
+/// The answer for options that were refused: 400 where only the query is at fault, 422 otherwise.
+Response refuse_options(const Request& request, api::FaultKind kind, api::Faults faults);
+
+/// The mesh as GLB, with headers that say what rounding did, or why it cannot be written.
+Response glb_response(const Request& request, const core::MeshData& mesh,
+                      const api::GltfOptions& options);
+
+}  // namespace tinsmith::server

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <utility>
+
+#include "api/responses.hpp"
+#include "server/reply.hpp"
+#include "server/routes/handlers.hpp"
+
+namespace tinsmith::server {
+
+Response get_welcome(Services&, const Request&, const PathArguments&) {
+    return ok("text/plain; charset=utf-8",
+              "Tinsmith edits terrain meshes.\n\n"
+              "  GET  /v1/sessions                 what is loaded\n"
+              "  POST /v1/sessions                 load a terrain (GeoTIFF or JSON)\n"
+              "  POST /v1/sessions/{id}/polygons   cut GeoJSON polygons into its mesh\n"
+              "  GET  /v1/sessions/{id}/mesh.glb   the mesh as glTF with Draco\n");
+}
+
+Response get_health(Services&, const Request&, const PathArguments&) {
+    return ok(kJson, "{\"status\":\"ok\"}\n");
+}
+
+Response get_limits(Services& services, const Request&, const PathArguments&) {
+    const Limits& limits = services.limits;
+    const std::array<std::pair<std::string_view, double>, 7> list{{
+        {"max_body_bytes", static_cast<double>(limits.max_body_bytes)},
+        {"max_sessions", static_cast<double>(limits.max_sessions)},
+        {"max_memory_bytes", static_cast<double>(limits.max_memory_bytes)},
+        {"max_vertices", static_cast<double>(limits.max_vertices)},
+        {"max_triangles", static_cast<double>(limits.max_triangles)},
+        {"max_crossings", static_cast<double>(limits.max_crossings)},
+        {"max_edit_seconds", limits.max_edit_seconds},
+    }};
+    return ok(kJson, api::write_limits(list));
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include "api/media_type.hpp"
+#include "api/responses.hpp"
+#include "server/reply.hpp"
+#include "server/routes/handlers.hpp"
+#include "server/routes/route_support.hpp"
+#include "server/terrain_reading.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+constexpr std::string_view kTerrainTypes =
+    "application/json (mesh or grid), image/tiff (GeoTIFF elevations)";
+
+/// The format by Content-Type, or 415 saying what curl should have been told.
+Step<TerrainFormat> require_terrain_format(const Request& request) {
+    const std::string type = api::media_type_of(request.header("content-type").value_or(""));
+    if (type == "application/json") return TerrainFormat::Json;
+    if (type == "image/tiff" || type == "image/geotiff") return TerrainFormat::GeoTiff;
+    return refuse_media_type(request, type, "a terrain", kTerrainTypes,
+                             "-H 'Content-Type: application/json' or "
+                             "-H 'Content-Type: image/tiff'");
+}
+
+Response refuse_session(const Request& request, const Limits& limits, StoreRefusal why) {
+    if (why == StoreRefusal::NoMemory) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "All meshes together would pass the limit max_memory_bytes of " +
+                          std::to_string(limits.max_memory_bytes) +
+                          ". DELETE sessions that are not needed.");
+    }
+    if (why == StoreRefusal::IdIsTaken) {
+        return refuse(request, api::ProblemType::Internal, "The new id is taken: try again.");
+    }
+    return refuse(request, api::ProblemType::TooManySessions,
+                  "The limit max_sessions of " + std::to_string(limits.max_sessions) +
+                      " is reached. DELETE sessions that are not needed.");
+}
+
+}  // namespace
+
+Response list_sessions(Services& services, const Request&, const PathArguments&) {
+    std::vector<api::SessionView> views;
+    for (const auto& session : services.sessions.all())
+        views.push_back(session->view());
+    return ok(kJson, api::write_session_list(views));
+}
+
+Response create_session(Services& services, const Request& request, const PathArguments&) {
+    const auto format = require_terrain_format(request);
+    if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
+    auto terrain = load_terrain(request.body, std::get<0>(format), services.read_limits());
+    if (!terrain) {
+        return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
+    }
+    const auto added = services.sessions.add(std::move(terrain->tin), terrain->about);
+    if (const auto* why = std::get_if<StoreRefusal>(&added)) {
+        return refuse_session(request, services.limits, *why);
+    }
+    const Session& session = *std::get<0>(added);
+    const api::SessionView view = session.view();
+    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
+    response.with("ETag", session.etag(view.version));
+    return response;
+}
+
+Response get_session(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    const api::SessionView view = session.view();
+    Response response = ok(kJson, api::write_session(view));
+    response.with("ETag", session.etag(view.version));
+    return response;
+}
+
+Response delete_session(Services& services, const Request& request,
+                        const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    const auto expected = require_if_match(request, session);
+    if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
+    const std::uint64_t version = session.view().version;
+    if (std::get<0>(expected).value_or(version) != version) {
+        return version_mismatch(request, session, version);
+    }
+    services.sessions.remove(arguments[0]);
+    return no_content();
+}
+
+}  // namespace tinsmith::server

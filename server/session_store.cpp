@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session_store.hpp"
+
+#include <mutex>
+#include <utility>
+
+#include "server/random_id.hpp"
+
+namespace tinsmith::server {
+
+SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
+                                      std::optional<std::string> id) {
+    SessionFacts facts{id ? std::move(*id) : random_uuid(), random_hex(8), about.name, about.crs,
+                       about.unit};
+    auto session = std::make_shared<Session>(std::move(facts), std::move(tin));
+    const std::string& key = session->facts().id;
+    const std::unique_lock lock(mutex_);
+    if (sessions_.contains(key)) return StoreRefusal::IdIsTaken;
+    if (sessions_.size() >= limits_.max_sessions) return StoreRefusal::TooMany;
+    std::size_t held = session->memory_bytes();
+    for (const auto& [other_id, other] : sessions_)
+        held += other->memory_bytes();
+    if (held > limits_.max_memory_bytes) return StoreRefusal::NoMemory;
+    sessions_.emplace(key, session);
+    return session;
+}
+
+std::shared_ptr<Session> SessionStore::find(const std::string& id) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = sessions_.find(id);
+    return found == sessions_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<Session>> SessionStore::all() const {
+    const std::shared_lock lock(mutex_);
+    std::vector<std::shared_ptr<Session>> list;
+    list.reserve(sessions_.size());
+    for (const auto& [id, session] : sessions_)
+        list.push_back(session);
+    return list;
+}
+
+bool SessionStore::remove(const std::string& id) {
+    std::shared_ptr<Session> last;  // freed after the lock: a mesh is large
+    const std::unique_lock lock(mutex_);
+    const auto found = sessions_.find(id);
+    if (found == sessions_.end()) return false;
+    last = std::move(found->second);
+    sessions_.erase(found);
+    return true;
+}
+
+std::size_t SessionStore::size() const {
+    const std::shared_lock lock(mutex_);
+    return sessions_.size();
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "api/terrain.hpp"
+#include "server/limits.hpp"
+#include "server/session.hpp"
+
+namespace tinsmith::server {
+
+/// Why a session could not be kept.
+enum class StoreRefusal {
+    TooMany,    ///< Limits::max_sessions are there already
+    NoMemory,   ///< Limits::max_memory_bytes would be passed
+    IdIsTaken,  ///< the id of choice exists
+};
+
+/// All sessions of this process, by id. A session that is removed lives on for those who still
+/// hold it. Lookups take a shared lock for the time of a map search.
+class SessionStore {
+  public:
+    explicit SessionStore(Limits limits) : limits_(limits) {}
+
+    using Added = std::variant<std::shared_ptr<Session>, StoreRefusal>;
+
+    /// Keeps a mesh as a new session. No id: a random one of 128 bits.
+    Added add(core::Tin tin, const api::Terrain& about, std::optional<std::string> id = {});
+
+    /// Null where there is none.
+    std::shared_ptr<Session> find(const std::string& id) const;
+
+    /// All sessions in the order of their ids.
+    std::vector<std::shared_ptr<Session>> all() const;
+
+    bool remove(const std::string& id);
+
+    std::size_t size() const;
+
+  private:
+    const Limits limits_;
+    mutable std::shared_mutex mutex_;  ///< guards the map, not the sessions
+    std::map<std::string, std::shared_ptr<Session>> sessions_;
+};
+
+}  // namespace tinsmith::server

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/terrain_reading.hpp"
+
+#include <utility>
+
+#include "api/formats/geotiff.hpp"
+#include "api/formats/terrain_json.hpp"
+#include "core/mesh/build.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+api::Fault fault_of(const core::Error& error, TerrainFormat format) {
+    api::Fault fault{std::string(core::code_name(error.code)), error.detail, {}};
+    const bool is_json = format == TerrainFormat::Json;
+    if (error.place.triangle) {
+        fault.index = *error.place.triangle;
+        if (is_json) fault.pointer = "/mesh/triangles/" + std::to_string(*fault.index);
+    } else if (error.place.vertex) {
+        fault.index = *error.place.vertex;
+        if (is_json) fault.pointer = "/mesh/vertices/" + std::to_string(*fault.index);
+    }
+    if (error.place.position) {
+        fault.coordinate = {error.place.position->x, error.place.position->y};
+    }
+    return fault;
+}
+
+}  // namespace
+
+TerrainFormat terrain_format_of(std::string_view bytes) {
+    // "II" or "MM" for the order of bytes, then 42, or 43 for files beyond 4 GiB.
+    using namespace std::string_view_literals;
+    const bool is_tiff = bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv) ||
+                         bytes.starts_with("II+\0"sv) || bytes.starts_with("MM\0+"sv);
+    return is_tiff ? TerrainFormat::GeoTiff : TerrainFormat::Json;
+}
+
+api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
+                                        const api::ReadLimits& limits) {
+    auto terrain = format == TerrainFormat::GeoTiff ? api::read_geotiff(bytes, limits)
+                                                    : api::read_terrain_json(bytes, limits);
+    if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
+    auto tin = core::build_tin(terrain->mesh);
+    if (!tin) {
+        api::Faults faults;
+        auto kind = api::FaultKind::Invalid;
+        for (const core::Error& error : tin.errors()) {
+            if (error.code == core::ErrorCode::MeshTooLarge) kind = api::FaultKind::TooLarge;
+            faults.push_back(fault_of(error, format));
+        }
+        return {kind, std::move(faults)};
+    }
+    terrain->mesh = {};
+    return LoadedTerrain{std::move(*terrain), std::move(*tin)};
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "api/fault.hpp"
+#include "api/formats/read_limits.hpp"
+#include "api/terrain.hpp"
+#include "core/mesh/tin.hpp"
+#include "core/types/result.hpp"
+
+namespace tinsmith::server {
+
+enum class TerrainFormat { Json, GeoTiff };
+
+/// By the first bytes: a TIFF says so, anything else is read as JSON.
+TerrainFormat terrain_format_of(std::string_view bytes);
+
+/// A terrain that was read and its mesh built; `about.mesh` is empty by then.
+struct LoadedTerrain {
+    api::Terrain about;
+    core::Tin tin;
+};
+
+/// Reads and builds in one go, the same for requests, the demo and the command line. Faults of the
+/// mesh come back in the body's own places.
+api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
+                                        const api::ReadLimits& limits);
+
+}  // namespace tinsmith::server
