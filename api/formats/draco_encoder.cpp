@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
@@ -47,34 +49,50 @@ void set_triangles(draco::Mesh& mesh, const DracoPiece& piece) {
     }
 }
 
+/// n * 2^exponent in hexadecimal, as strtof reads it: exact, and the same in every locale.
+std::string exact_text(std::int32_t n, int exponent) {
+    std::array<char, 16> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(n), 16);
+    return (n < 0 ? "-0x" : "0x") + std::string(digits.data(), end.ptr) + "p" +
+           std::to_string(exponent);
+}
+
 /// The explicit quantization whose every product and sum is exact in float32: the origin is a
 /// corner of the grid, and range / (2^bits - 1) is the step itself.
 struct Quantization {
-    std::array<float, 3> origin{};
-    float range = 0;
+    GridPoint origin{};
     unsigned bits = 1;
 };
 
-Quantization quantization_for(const DracoPiece& piece, float step) {
+Quantization quantization_for(const DracoPiece& piece) {
     Box<std::int32_t> box;
     for (const GridPoint& point : piece.positions)
         box.add(point);
     std::int32_t extent = 1;
-    Quantization quantization;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
         extent = std::max(extent, box.high[axis] - box.low[axis]);
-        quantization.origin[axis] = static_cast<float>(box.low[axis]) * step;
-    }
-    quantization.bits = static_cast<unsigned>(std::bit_width(static_cast<std::uint32_t>(extent)));
-    quantization.range = static_cast<float>((std::int64_t{1} << quantization.bits) - 1) * step;
-    return quantization;
+    return {box.low, static_cast<unsigned>(std::bit_width(static_cast<std::uint32_t>(extent)))};
+}
+
+/// What SetAttributeExplicitQuantization does, but exactly: that one passes the floats through
+/// std::to_string, which keeps six decimals, and an origin of 1.0078125 becomes 1.007812.
+void quantize_positions(draco::Encoder& encoder, const Quantization& quantization, int exponent) {
+    std::string origin;
+    for (const std::int32_t n : quantization.origin)
+        origin += exact_text(n, exponent) + " ";
+    const std::int32_t range = (std::int32_t{1} << quantization.bits) - 1;
+    draco::Options exact;
+    exact.SetInt("quantization_bits", static_cast<int>(quantization.bits));
+    exact.SetString("quantization_origin", origin);
+    exact.SetString("quantization_range", exact_text(range, exponent));
+    encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION, exact);
 }
 
 }  // namespace
 
 std::variant<DracoBytes, EncodeError> encode_draco(const DracoPiece& piece) {
     const float step = std::ldexp(1.0F, piece.exponent);
-    const Quantization quantization = quantization_for(piece, step);
+    const Quantization quantization = quantization_for(piece);
     if (quantization.bits > kDracoBits)
         return EncodeError{EncodeFault::Codec, "the piece is too wide for exact Draco positions"};
 
@@ -96,9 +114,7 @@ std::variant<DracoBytes, EncodeError> encode_draco(const DracoPiece& piece) {
     draco::Encoder encoder;
     encoder.SetSpeedOptions(kDracoSpeed, kDracoSpeed);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    encoder.SetAttributeExplicitQuantization(draco::GeometryAttribute::POSITION,
-                                             static_cast<int>(quantization.bits), 3,
-                                             quantization.origin.data(), quantization.range);
+    quantize_positions(encoder, quantization, piece.exponent);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, kDracoNormalBits);
     encoder.SetTrackEncodedProperties(true);  // or num_encoded_points() stays 0
     draco::EncoderBuffer buffer;

@@ -118,7 +118,7 @@ struct Tiling {
 /// each cut placed as late as it can be, which makes the fewest on its axis. The same input gives
 /// the same tiles. Items wider than half of `span` are set apart, so that every cut moves on by at
 /// least half a span and the number of tiles is bounded by the extent, not by the items.
-/// Cost: O(n log n) plus one pass for each tile of a strip.
+/// Cost: a pass over what is left for each cut; no sorting.
 Tiling split_into_tiles(std::span<const Box<std::int32_t>> boxes, std::int32_t span);
 
 }  // namespace tinsmith::api

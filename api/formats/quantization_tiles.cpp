@@ -23,23 +23,23 @@ bool wider_than(const IntBox& box, std::int64_t width) {
 
 /// Cuts the items into runs no wider than `span` on this axis and appends them to `runs`.
 ///
-///   low of the first item left          low + span
+///   the lowest low left                 lowest + span
 ///        |=====================================|
 ///          [--]  [-----] taken          [---]     [----] left for the next run
 ///                                           [------]     left: reaches over
+/// Items keep their order, so rising indices stay rising.
 void cut_axis(std::span<const IntBox> boxes, std::size_t axis, std::int64_t span, Items items,
               std::vector<Items>& runs) {
-    std::sort(items.begin(), items.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::pair(boxes[a].low[axis], a) < std::pair(boxes[b].low[axis], b);
-    });
-    // Ends: the first item left always fits, and what stays reaches half a span beyond it.
+    // Ends: the item with the lowest low always fits, and what stays reaches half a span beyond it.
     while (!items.empty()) {
-        const std::int64_t limit = boxes[items.front()].low[axis] + span;
-        const auto left = std::stable_partition(
-            items.begin(), items.end(),
-            [&](std::uint32_t item) { return boxes[item].high[axis] <= limit; });
-        runs.emplace_back(items.begin(), left);
-        items.erase(items.begin(), left);
+        std::int64_t lowest = boxes[items.front()].low[axis];
+        for (const std::uint32_t item : items)
+            lowest = std::min(lowest, std::int64_t{boxes[item].low[axis]});
+        Items taken, left;
+        for (const std::uint32_t item : items)
+            (boxes[item].high[axis] <= lowest + span ? taken : left).push_back(item);
+        runs.push_back(std::move(taken));
+        items = std::move(left);
     }
 }
 
@@ -58,8 +58,6 @@ Tiling split_into_tiles(std::span<const Box<std::int32_t>> boxes, std::int32_t s
             cut_axis(boxes, axis, span, std::move(tile), runs);
         tiling.tiles = std::move(runs);
     }
-    for (Items& tile : tiling.tiles)
-        std::sort(tile.begin(), tile.end());
     return tiling;
 }
 

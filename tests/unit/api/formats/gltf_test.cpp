@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/gltf.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/api/formats/gltf_decoding.hpp"
+
+namespace tinsmith::api {
+namespace {
+
+using testing::DecodedGlb;
+using testing::DecodedPrimitive;
+using testing::placed;
+
+/// Hills over columns x rows cells, posts off the lattice, so that nothing is round by chance.
+core::MeshData hills(std::uint32_t columns, std::uint32_t rows, double cell,
+                     core::Point3 corner = {702113.37, 4029551.81, 411.3}) {
+    core::MeshData mesh;
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+        for (std::uint32_t column = 0; column <= columns; ++column) {
+            const double u = column + 0.3 * std::sin(7.0 * row + column);
+            const double v = row + 0.3 * std::sin(5.0 * column + 2.0 * row);
+            mesh.vertices.push_back({corner.x + u * cell, corner.y + v * cell,
+                                     corner.z + 80 * std::sin(u / 9) * std::cos(v / 7)});
+        }
+    }
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const std::uint32_t a = row * (columns + 1) + column;
+            mesh.triangles.push_back({a, a + 1, a + columns + 2});
+            mesh.triangles.push_back({a, a + columns + 2, a + columns + 1});
+        }
+    }
+    for (std::uint32_t column = 0; column < columns; ++column)
+        mesh.constraints.push_back({columns + 1 + column, columns + 2 + column});
+    return mesh;
+}
+
+GltfResult written(const core::MeshData& mesh, const GltfOptions& options) {
+    auto result = write_glb(mesh, options);
+    if (const auto* error = std::get_if<EncodeError>(&result)) {
+        ADD_FAILURE() << error->detail;
+        return {};
+    }
+    return std::get<GltfResult>(std::move(result));
+}
+
+EncodeError refused(const core::MeshData& mesh, const GltfOptions& options) {
+    const auto result = write_glb(mesh, options);
+    EXPECT_TRUE(std::holds_alternative<EncodeError>(result));
+    if (const auto* error = std::get_if<EncodeError>(&result)) return *error;
+    return {};
+}
+
+bool within(const core::Point3& a, const core::Point3& b, double tolerance) {
+    return std::fabs(a.x - b.x) <= tolerance && std::fabs(a.y - b.y) <= tolerance &&
+           std::fabs(a.z - b.z) <= tolerance;
+}
+
+/// The session's vertices in metres, found by decoded position.
+class NearestVertex {
+  public:
+    NearestVertex(const core::MeshData& mesh, double unit, double tolerance)
+        : tolerance_(tolerance) {
+        for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+            const auto& v = mesh.vertices[i];
+            by_x_.emplace(v.x * unit,
+                          std::pair(core::Point3{v.x * unit, v.y * unit, v.z * unit}, i));
+        }
+    }
+    /// The one vertex within the tolerance on each axis; a failure when there is none.
+    std::uint32_t operator()(const core::Point3& p) const {
+        for (auto at = by_x_.lower_bound(p.x - tolerance_);
+             at != by_x_.end() && at->first <= p.x + tolerance_; ++at) {
+            if (within(at->second.first, p, tolerance_)) return at->second.second;
+        }
+        ADD_FAILURE() << "no vertex near " << p.x << ", " << p.y << ", " << p.z;
+        return 0;
+    }
+
+  private:
+    double tolerance_;
+    std::multimap<double, std::pair<core::Point3, std::uint32_t>> by_x_;
+};
+
+std::array<std::uint32_t, 3> smallest_first(std::array<std::uint32_t, 3> t) {
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    return t;
+}
+
+/// Every decoded triangle is one of the mesh, turned the same way, each exactly once; bounds in the
+/// accessors are those of the decoded values; normals are unit and look up.
+void expect_same_mesh(const core::MeshData& mesh, const GltfOptions& options,
+                      const DecodedGlb& glb) {
+    const NearestVertex nearest(mesh, options.unit_to_metre, options.tolerance);
+    std::vector<std::array<std::uint32_t, 3>> found, expected;
+    const bool y_up = options.up == UpAxis::Y;
+    for (const DecodedPrimitive& primitive : glb.primitives) {
+        std::array<double, 3> low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
+        for (const auto& p : primitive.positions) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], double{p[axis]});
+                high[axis] = std::max(high[axis], double{p[axis]});
+            }
+        }
+        EXPECT_EQ(primitive.position_accessor.at("min"), nlohmann::json(low));
+        EXPECT_EQ(primitive.position_accessor.at("max"), nlohmann::json(high));
+        EXPECT_EQ(primitive.position_accessor.at("count"), primitive.positions.size());
+        for (const double metre : primitive.translation)
+            EXPECT_EQ(metre, std::nearbyint(metre));
+        if (primitive.mode != 4) continue;
+        EXPECT_EQ(primitive.normals.size(), options.normals ? primitive.positions.size() : 0);
+        for (const auto& n : primitive.normals) {
+            EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1.0, 1e-4);
+            EXPECT_GE(n[y_up ? 1 : 2], 0.0);
+        }
+        for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+            std::array<std::uint32_t, 3> t{};
+            for (std::size_t k = 0; k < 3; ++k)
+                t[k] = nearest(placed(primitive, primitive.indices[i + k], y_up));
+            found.push_back(smallest_first(t));
+        }
+    }
+    for (const auto& t : mesh.triangles)
+        expected.push_back(smallest_first(t));
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(found, expected);
+}
+
+void expect_same_lines(const core::MeshData& mesh, const GltfOptions& options,
+                       const DecodedGlb& glb) {
+    // The lines' vertices are, bit for bit, positions of the triangles.
+    std::set<std::array<double, 3>> triangle_positions;
+    const NearestVertex nearest(mesh, options.unit_to_metre, options.tolerance);
+    std::vector<std::array<std::uint32_t, 2>> found;
+    for (const bool lines : {false, true}) {
+        for (const DecodedPrimitive& primitive : glb.primitives) {
+            if ((primitive.mode == 1) != lines) continue;
+            for (std::uint32_t i = 0; i < primitive.positions.size(); ++i) {
+                const auto p = placed(primitive, i, options.up == UpAxis::Y);
+                if (!lines) triangle_positions.insert({p.x, p.y, p.z});
+                EXPECT_TRUE(triangle_positions.contains({p.x, p.y, p.z}));
+            }
+            for (std::size_t i = 0; lines && i < primitive.indices.size(); i += 2) {
+                const auto at = [&](std::size_t k) {
+                    return nearest(
+                        placed(primitive, primitive.indices[k], options.up == UpAxis::Y));
+                };
+                found.push_back({at(i), at(i + 1)});
+            }
+        }
+    }
+    auto expected = mesh.constraints;
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(found, expected);
+}
+
+TEST(WriteGlb, DracoHoldsTheMeshWithinTheTolerance) {
+    const core::MeshData mesh = hills(60, 40, 30);
+    for (const UpAxis up : {UpAxis::Y, UpAxis::Z}) {
+        for (const double unit : {1.0, 0.3048}) {
+            GltfOptions options;
+            options.up = up;
+            options.unit_to_metre = unit;
+            const GltfResult result = written(mesh, options);
+            const DecodedGlb glb = testing::decode_glb(result.bytes);
+            expect_same_mesh(mesh, options, glb);
+            expect_same_lines(mesh, options, glb);
+            EXPECT_EQ(glb.primitives.size(), 2u);
+            EXPECT_EQ(result.primitives, 1u);
+            EXPECT_EQ(result.nodes, 1u);
+            EXPECT_EQ(result.step, 0x1p-7);
+            EXPECT_LE(result.max_error, 0x1p-8 * 1.000001);
+            EXPECT_GT(result.max_error, 0x1p-8 * 0.9);
+            EXPECT_EQ(result.flipped + result.collapsed, 0u);
+            EXPECT_EQ(glb.json.at("extensionsRequired"), glb.json.at("extensionsUsed"));
+            EXPECT_EQ(glb.json.at("extensionsUsed"),
+                      nlohmann::json::array({"KHR_draco_mesh_compression"}));
+        }
+    }
+}
+
+TEST(WriteGlb, TurnsZUpIntoYUp) {
+    core::MeshData mesh;
+    mesh.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 20, 6}};
+    mesh.triangles = {{0, 1, 2}};
+    const GltfResult result = written(mesh, {.compression = Compression::None});
+    const DecodedGlb glb = testing::decode_glb(result.bytes);
+    EXPECT_EQ(result.origin, (std::array<double, 3>{5, 10, 3}));
+    EXPECT_EQ(glb.primitives.at(0).translation, (std::array<double, 3>{5, 3, -10}));
+    EXPECT_EQ(glb.primitives[0].positions,
+              (std::vector<std::array<float, 3>>{{-5, -3, 10}, {5, -3, 10}, {-5, 3, -10}}));
+    // Counter-clockwise as seen from +y.
+    EXPECT_EQ(glb.primitives[0].indices, (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
+TEST(WriteGlb, PlainKeepsSlotOrder) {
+    const core::MeshData mesh = hills(30, 20, 25);
+    GltfOptions options;
+    options.compression = Compression::None;
+    const GltfResult result = written(mesh, options);
+    const DecodedGlb glb = testing::decode_glb(result.bytes);
+    expect_same_mesh(mesh, options, glb);
+    expect_same_lines(mesh, options, glb);
+    EXPECT_FALSE(glb.json.contains("extensionsUsed"));
+    const DecodedPrimitive& primitive = glb.primitives.at(0);
+    ASSERT_EQ(primitive.positions.size(), mesh.vertices.size());
+    double largest = 0;
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+        const core::Point3 p = placed(primitive, i, true), v = mesh.vertices[i];
+        largest =
+            std::max({largest, std::fabs(p.x - v.x), std::fabs(p.y - v.y), std::fabs(p.z - v.z)});
+    }
+    EXPECT_EQ(result.max_error, largest);
+    EXPECT_EQ(primitive.indices[3], mesh.triangles[1][0]);
+    EXPECT_EQ(result.bits, 0u);
+}
+
+TEST(WriteGlb, MeasuresWhatClientsSee) {
+    const core::MeshData mesh = hills(50, 50, 12);
+    GltfOptions options;
+    options.tolerance = 0.1;
+    const GltfResult result = written(mesh, options);
+    const DecodedGlb glb = testing::decode_glb(result.bytes);
+    const NearestVertex nearest(mesh, 1.0, 0.1);
+    std::array<double, 3> largest{};
+    const DecodedPrimitive& primitive = glb.primitives.at(0);
+    for (std::uint32_t i = 0; i < primitive.positions.size(); ++i) {
+        const core::Point3 p = placed(primitive, i, true);
+        const core::Point3 v = mesh.vertices[nearest(p)];
+        largest = {std::max(largest[0], std::fabs(p.x - v.x)),
+                   std::max(largest[1], std::fabs(p.y - v.y)),
+                   std::max(largest[2], std::fabs(p.z - v.z))};
+    }
+    EXPECT_EQ(result.axis_error, largest);
+    EXPECT_EQ(result.max_error, std::max({largest[0], largest[1], largest[2]}));
+}
+
+/// Positions that more than one triangle primitive has, each with how many have it.
+std::size_t shared_positions(const DecodedGlb& glb) {
+    std::map<std::array<double, 3>, std::size_t> count;
+    for (const DecodedPrimitive& primitive : glb.primitives) {
+        if (primitive.mode != 4) continue;
+        std::set<std::array<double, 3>> own;
+        for (std::uint32_t i = 0; i < primitive.positions.size(); ++i) {
+            const auto p = placed(primitive, i, true);
+            own.insert({p.x, p.y, p.z});
+        }
+        for (const auto& p : own)
+            ++count[p];
+    }
+    return static_cast<std::size_t>(std::count_if(
+        count.begin(), count.end(), [](const auto& entry) { return entry.second > 1; }));
+}
+
+/// Vertices of the mesh that triangles of more than one primitive use.
+std::size_t border_vertices(const core::MeshData& mesh, const DecodedGlb& glb, double tolerance) {
+    const NearestVertex nearest(mesh, 1.0, tolerance);
+    std::vector<std::set<std::size_t>> users(mesh.vertices.size());
+    for (std::size_t k = 0; k < glb.primitives.size(); ++k) {
+        if (glb.primitives[k].mode != 4) continue;
+        for (std::uint32_t i = 0; i < glb.primitives[k].positions.size(); ++i)
+            users[nearest(placed(glb.primitives[k], i, true))].insert(k);
+    }
+    return static_cast<std::size_t>(std::count_if(
+        users.begin(), users.end(), [](const auto& user) { return user.size() > 1; }));
+}
+
+TEST(WriteGlb, AWideMeshIsCutWithoutASeam) {
+    // 12 km at 2^-10 m: 2^23.5 steps, so more than one primitive but one node.
+    const core::MeshData mesh = hills(60, 60, 200);
+    GltfOptions options;
+    options.tolerance = 0x1p-10;
+    const GltfResult result = written(mesh, options);
+    const DecodedGlb glb = testing::decode_glb(result.bytes);
+    EXPECT_EQ(result.primitives, 4u);
+    EXPECT_EQ(result.nodes, 1u);
+    EXPECT_EQ(result.bits, 23u);
+    expect_same_mesh(mesh, options, glb);
+    expect_same_lines(mesh, options, glb);
+    const std::size_t border = border_vertices(mesh, glb, options.tolerance);
+    EXPECT_GT(border, 60u);
+    EXPECT_EQ(shared_positions(glb), border) << "a border vertex differs between primitives";
+}
+
+TEST(WriteGlb, BeyondOneNodesFloatsEachPrimitiveHasANode) {
+    // 60 km at 2^-13 m: 2^28.9 steps.
+    const core::MeshData mesh = hills(120, 120, 500);
+    GltfOptions options;
+    options.tolerance = 0x1p-12;
+    const GltfResult result = written(mesh, options);
+    const DecodedGlb glb = testing::decode_glb(result.bytes);
+    EXPECT_EQ(result.nodes, glb.primitives.size());
+    EXPECT_GT(result.nodes, result.primitives);
+    expect_same_mesh(mesh, options, glb);
+    expect_same_lines(mesh, options, glb);
+    EXPECT_EQ(shared_positions(glb), border_vertices(mesh, glb, options.tolerance));
+}
+
+TEST(WriteGlb, HugeTrianglesGoUncompressedOnTheSameGrid) {
+    core::MeshData mesh = hills(20, 20, 100, {0, 0, 0});
+    // A skirt of two triangles 100 km wide beside the hills, on their south-west corner.
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back({100000.1, -50000.2, 3.3});
+    mesh.vertices.push_back({-30000.7, -50000.4, 7.7});
+    mesh.triangles.push_back({first + 1, first, 0});
+    const GltfOptions options;
+    const GltfResult result = written(mesh, options);
+    const DecodedGlb glb = testing::decode_glb(result.bytes);
+    EXPECT_EQ(result.primitives, 2u);
+    EXPECT_EQ(result.nodes, 1u);
+    expect_same_mesh(mesh, options, glb);
+    EXPECT_EQ(shared_positions(glb), 1u);
+
+    core::MeshData alone{mesh.vertices, {{first + 1, first, 0}}, {}};
+    alone.vertices[1] = alone.vertices[0];
+    const DecodedGlb plain = testing::decode_glb(written(alone, options).bytes);
+    EXPECT_FALSE(plain.json.contains("extensionsRequired"));
+}
+
+TEST(WriteGlb, CountsWhatRoundingTurnsOver) {
+    core::MeshData mesh;
+    // On a grid of 1 m: the first stays; the second's apex, just above its base, rounds to 0 while
+    // the base goes down from 1 to 0; the third rounds onto one line.
+    mesh.vertices = {{0, 20, 0},   {10, 20, 0},   {0, 30, 0},    {0, 0.6, 0},  {10, 0.4, 0},
+                     {6, 0.49, 0}, {20, 10.1, 0}, {30, 10.2, 0}, {25, 10.3, 0}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+    GltfOptions options;
+    options.tolerance = 0.6;
+    const GltfResult coarse = written(mesh, options);
+    EXPECT_EQ(coarse.step, 1.0);
+    EXPECT_EQ(coarse.flipped, 1u);
+    EXPECT_EQ(coarse.collapsed, 1u);
+    const DecodedGlb glb = testing::decode_glb(coarse.bytes);
+    const auto& extras = glb.json.at("scenes").at(0).at("extras");
+    EXPECT_EQ(extras.at("collapsed"), coarse.collapsed);
+    EXPECT_EQ(extras.at("flipped"), coarse.flipped);
+    EXPECT_EQ(extras.at("max_error").get<double>(), coarse.max_error);
+    EXPECT_EQ(extras.at("step").get<double>(), 1.0);
+    EXPECT_EQ(extras.at("origin"), nlohmann::json(coarse.origin));
+    EXPECT_EQ(extras.at("triangles"), mesh.triangles.size());
+    options.tolerance = 0.005;
+    const GltfResult fine = written(mesh, options);
+    EXPECT_EQ(fine.flipped + fine.collapsed, 0u);
+}
+
+TEST(WriteGlb, PlainFlipsAreThoseOfTheFloats) {
+    // Near 60 km a float32 step is 2^-8 m: the sliver's apex falls onto its base.
+    core::MeshData mesh;
+    mesh.vertices = {{-60000, -60000, 0},     {60000, -60000, 0},    {60000, 60000, 0},
+                     {0, 0.0004, 0},          {59000.5, 59000.5, 0}, {59001.5, 59001.5, 0},
+                     {59001.0, 59001.0005, 0}};
+    mesh.triangles = {{0, 1, 2}, {4, 5, 6}, {0, 2, 3}};
+    const GltfResult result = written(mesh, {.compression = Compression::None});
+    EXPECT_EQ(result.collapsed, 1u);
+    EXPECT_EQ(result.flipped, 0u);
+}
+
+TEST(WriteGlb, LeavesOutWhatIsNotAskedFor) {
+    core::MeshData mesh = hills(5, 5, 10);
+    for (const Compression compression : {Compression::Draco, Compression::None}) {
+        GltfOptions options;
+        options.compression = compression;
+        options.constraints = false;
+        options.normals = false;
+        const DecodedGlb glb = testing::decode_glb(written(mesh, options).bytes);
+        ASSERT_EQ(glb.primitives.size(), 1u);
+        EXPECT_TRUE(glb.primitives[0].normals.empty());
+        options.constraints = true;
+        core::MeshData without = mesh;
+        without.constraints.clear();
+        EXPECT_EQ(testing::decode_glb(written(without, options).bytes).primitives.size(), 1u);
+    }
+}
+
+TEST(WriteGlb, GivesTheSameBytesAgain) {
+    const core::MeshData mesh = hills(40, 40, 300);
+    for (const double tolerance : {0.005, 0.0005}) {
+        GltfOptions options;
+        options.tolerance = tolerance;
+        EXPECT_EQ(written(mesh, options).bytes, written(mesh, options).bytes);
+    }
+}
+
+TEST(WriteGlb, RefusesWhatDracoTakesForGranted) {
+    const core::MeshData good = hills(2, 2, 10);
+    EXPECT_EQ(refused({}, {}).fault, EncodeFault::BadMesh);
+    core::MeshData bad = good;
+    bad.vertices[3].z = std::nan("");
+    EXPECT_EQ(refused(bad, {}).detail, "a coordinate that is not finite or too large at vertex 3");
+    bad = good;
+    bad.triangles[2][1] = 9;
+    EXPECT_EQ(refused(bad, {}).detail, "a wrong vertex index in triangle 2");
+    bad = good;
+    bad.triangles[2][1] = bad.triangles[2][2];
+    EXPECT_EQ(refused(bad, {}).fault, EncodeFault::BadMesh);
+    bad = good;
+    bad.constraints.push_back({4, 9});
+    EXPECT_EQ(refused(bad, {}).fault, EncodeFault::BadMesh);
+    for (const double number : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+        EXPECT_EQ(refused(good, {.tolerance = number}).fault, EncodeFault::BadOption);
+        EXPECT_EQ(refused(good, {.unit_to_metre = number}).fault, EncodeFault::BadOption);
+    }
+}
+
+TEST(WriteGlb, SaysWhichToleranceItCanHold) {
+    const core::MeshData mesh = hills(40, 40, 1000);
+    const EncodeError error = refused(mesh, {.tolerance = 1e-6});
+    EXPECT_EQ(error.fault, EncodeFault::ToleranceTooFine);
+    EXPECT_EQ(error.detail, "the finest tolerance for a mesh of this extent is 3.0517578125e-05 m");
+    const EncodeError plain = refused(mesh, {.compression = Compression::None, .tolerance = 1e-4});
+    EXPECT_EQ(plain.fault, EncodeFault::ToleranceTooFine);
+    EXPECT_NE(plain.detail.find("or coarser"), std::string::npos);
+}
+
+TEST(WriteGlb, HoldsExtremeExtents) {
+    for (const double cell : {1e-3, 1e6, 1e11}) {
+        const core::MeshData mesh = hills(8, 8, cell, {1e6, -2e6, 5});
+        GltfOptions options;
+        options.tolerance = std::max(cell * 1e-3, 1e-6);
+        expect_same_mesh(mesh, options, testing::decode_glb(written(mesh, options).bytes));
+    }
+}
+
+}  // namespace
+}  // namespace tinsmith::api
