@@ -137,6 +137,11 @@ class LegacyCrs : public Object {
     Object properties_{Unknown::PassOver};
 };
 
+/// Whether a member "type" was no text, which has been told.
+bool type_at_fault(std::string_view type, Reader& reader) {
+    return type.empty() && !reader.log().empty();
+}
+
 /// The shape of a geometry that has been read: the body, or a Feature's. nullopt: it has faults.
 std::optional<RequestedShape> finish_geometry(GeometryDraft& draft, Reader& reader) {
     if (draft.type == "GeometryCollection") {
@@ -147,6 +152,7 @@ std::optional<RequestedShape> finish_geometry(GeometryDraft& draft, Reader& read
                     reader.pointer()});
         return std::nullopt;
     }
+    if (type_at_fault(draft.type, reader)) return std::nullopt;
     const auto type = geometry_type(draft.type);
     if (!type) {
         reader.add(
@@ -220,7 +226,7 @@ class FeatureObject : public Object {
         properties_.write_to(draft_.properties);
     }
     void ended(Reader& reader) override {
-        if (draft_.type != "Feature") {
+        if (draft_.type != "Feature" && !type_at_fault(draft_.type, reader)) {
             reader.add(
                 FaultKind::Invalid,
                 {"GEOJSON_TYPE",
@@ -286,6 +292,7 @@ class Body : public Object {
     std::string_view expected() const override { return "a GeoJSON object"; }
     void begun(Reader&) override { properties_.write_to(feature_.properties); }
     void ended(Reader& reader) override {
+        if (type_at_fault(type_text_, reader)) return;
         std::string_view content = "coordinates";
         if (type_text_ == "FeatureCollection") content = "features";
         if (type_text_ == "Feature") content = "geometry";

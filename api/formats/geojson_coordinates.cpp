@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "api/formats/json_reader_values.hpp"
 
@@ -43,12 +44,20 @@ bool CoordinatesReader::charge(Reader& reader) {
     return true;
 }
 
-void CoordinatesReader::nesting_fault(Reader& reader) {
-    if (out_->sound) {  // one such fault says it: all that follow would be its children
-        reader.fault("COORDINATES_NESTING",
-                     "All positions of a geometry lie in equally many arrays; this one does not.");
+/// One such fault says it: all that follow would be its children.
+void CoordinatesReader::nesting_fault(Reader& reader, std::string pointer) {
+    if (out_->sound) {
+        reader.add(FaultKind::Invalid,
+                   {"COORDINATES_NESTING",
+                    "All positions of a geometry lie in equally many arrays; this one does not.",
+                    std::move(pointer)});
     }
+    doubt();
+}
+
+void CoordinatesReader::doubt() {
     out_->sound = false;
+    if (level_ > 0) holds_[level_ - 1] = Holds::Doubtful;
 }
 
 void CoordinatesReader::note_array(std::size_t level) {
@@ -58,17 +67,19 @@ void CoordinatesReader::note_array(std::size_t level) {
 }
 
 Container* CoordinatesReader::object(Reader& reader) {
-    out_->sound = false;
-    return Value::object(reader);
+    Value::object(reader);
+    doubt();
+    return nullptr;
 }
 
 Container* CoordinatesReader::array(Reader& reader) {
     if (level_ > 0 && holds_[level_ - 1] == Holds::Numbers) {
-        out_->sound = false;
-        return Value::array(reader);
+        Value::array(reader);
+        doubt();
+        return nullptr;
     }
     if (level_ == Coordinates::kMostDepth || (out_->depth != 0 && level_ >= out_->depth)) {
-        nesting_fault(reader);
+        nesting_fault(reader, reader.pointer());
         return nullptr;
     }
     if (level_ > 0 && holds_[level_ - 1] == Holds::Nothing) {
@@ -80,17 +91,18 @@ Container* CoordinatesReader::array(Reader& reader) {
 }
 
 Value* CoordinatesReader::element(Reader&) {
-    return this;
+    return holds_[level_ - 1] == Holds::Doubtful ? nullptr : this;
 }
 
 void CoordinatesReader::scalar(Reader& reader, const Scalar& value) {
-    if (level_ == 0 || holds_[level_ - 1] == Holds::Arrays ||
-        (holds_[level_ - 1] == Holds::Nothing && !value.is_number())) {
-        out_->sound = false;
-        return Value::scalar(reader, value);
+    const Holds held = level_ == 0 ? Holds::Arrays : holds_[level_ - 1];
+    const bool position_due = level_ == out_->depth;
+    if (held == Holds::Arrays || (held == Holds::Nothing && !position_due && !value.is_number())) {
+        Value::scalar(reader, value);
+        return doubt();
     }
-    if (holds_[level_ - 1] == Holds::Nothing) begin_position(reader);
-    take_number(reader, value);
+    if (held == Holds::Nothing) begin_position(reader);
+    if (holds_[level_ - 1] == Holds::Numbers) take_number(reader, value);
 }
 
 void CoordinatesReader::begin_position(Reader& reader) {
@@ -98,7 +110,10 @@ void CoordinatesReader::begin_position(Reader& reader) {
     numbers_ = 0;
     position_sound_ = charge(reader);
     if (out_->depth == 0 && out_->arrays[level_ - 1].empty()) out_->depth = level_;
-    if (out_->depth != level_) nesting_fault(reader);
+    if (out_->depth == level_) return;
+    std::string pointer = reader.pointer();  // of the first number: the position is around it
+    pointer.resize(pointer.rfind('/'));
+    nesting_fault(reader, std::move(pointer));
 }
 
 void CoordinatesReader::take_number(Reader& reader, const Scalar& value) {

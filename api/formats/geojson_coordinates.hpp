@@ -57,14 +57,16 @@ class CoordinatesReader : public json::Value, public json::Container {
     std::string_view expected() const override;
 
   private:
-    enum class Holds { Nothing, Arrays, Numbers };
+    /// What an open array holds so far. Doubtful: neither can be said, the rest is passed over.
+    enum class Holds { Nothing, Arrays, Numbers, Doubtful };
 
     bool charge(json::Reader& reader);
     void begin_position(json::Reader& reader);
     void take_number(json::Reader& reader, const json::Scalar& value);
     void end_position(json::Reader& reader);
     void note_array(std::size_t level);
-    void nesting_fault(json::Reader& reader);
+    void nesting_fault(json::Reader& reader, std::string pointer);
+    void doubt();
 
     Coordinates* out_ = nullptr;
     std::size_t most_;

@@ -97,8 +97,10 @@ class ShapeMaker {
         if (!coordinates_.sound) return false;  // told while it was read
         const TypeRow& row = row_of(made_.type);
         const auto& arrays = coordinates_.arrays;
-        const bool empty = row.depth > 1 ? arrays[row.depth - 2].empty() : true;
-        if (coordinates_.depth == 0 && (empty || !arrays[row.depth - 1].empty())) {
+        // Without positions there may still be rings or lines, whose fault is to be too short.
+        const bool has_lines = row.depth > 1 && row.type != GeometryType::MultiPoint &&
+                               !arrays[row.depth - 2].empty() && arrays[row.depth - 1].empty();
+        if (coordinates_.depth == 0 && !has_lines) {
             fault("SHAPE_EMPTY", "This geometry has no position.", place());
             return false;
         }

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one file that knows GDAL.
+#include "api/formats/geotiff.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <cpl_vsi.h>
+#include <gdal.h>
+#include <gdal_frmts.h>
+#include <ogr_srs_api.h>
+
+#include "api/crs.hpp"
+#include "api/formats/grid_mesh.hpp"
+
+namespace tinsmith::api {
+
+namespace {
+
+/// A block of a raster is held decoded: one may be larger than the raster, not without bound.
+constexpr std::size_t kSmallestBlockLimit = std::size_t{4096} * 4096;
+
+struct Refused {
+    FaultKind kind;
+    Fault fault;
+};
+
+Refused refused(FaultKind kind, std::string code, std::string detail) {
+    return {kind, {std::move(code), std::move(detail), ""}};
+}
+
+/// While it lives, GDAL's messages of this thread come here and not to stderr, and GDAL looks for
+/// no files beside the one it is given.
+class GdalScope {
+  public:
+    GdalScope() {
+        static std::once_flag registered;
+        std::call_once(registered, [] { GDALRegister_GTiff(); });
+        CPLPushErrorHandlerEx(&GdalScope::take, this);
+        for (const auto& [name, value] : kOptions)
+            CPLSetThreadLocalConfigOption(name, value);
+    }
+    GdalScope(const GdalScope&) = delete;
+    GdalScope& operator=(const GdalScope&) = delete;
+    ~GdalScope() {
+        for (const auto& [name, value] : kOptions)
+            CPLSetThreadLocalConfigOption(name, nullptr);
+        CPLPopErrorHandler();
+    }
+
+    /// GDAL's first complaint, in printable ASCII; it may quote the file's bytes.
+    std::string complaint() const { return first_.empty() ? "no reason given" : first_; }
+    bool complained() const { return !first_.empty(); }
+    void forget() { first_.clear(); }
+
+  private:
+    static constexpr std::array<std::pair<const char*, const char*>, 3> kOptions{{
+        {"GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR"},
+        {"GDAL_PAM_ENABLED", "NO"},
+        {"GDAL_GEOREF_SOURCES", "INTERNAL"},
+    }};
+
+    static void CPL_STDCALL take(CPLErr level, CPLErrorNum, const char* message) {
+        auto* const self = static_cast<GdalScope*>(CPLGetErrorHandlerUserData());
+        if (level < CE_Failure || !self->first_.empty() || message == nullptr) return;
+        constexpr std::size_t longest = 200;
+        self->first_ = std::string(message).substr(0, longest);
+        // The random name of the file in memory says nothing to the caller.
+        for (auto at = self->first_.find("/vsimem/"); at != std::string::npos;
+             at = self->first_.find("/vsimem/")) {
+            const auto end = self->first_.find_first_of(",: '\"", at);
+            self->first_.replace(at, end == std::string::npos ? end : end - at, "the file");
+        }
+        for (char& c : self->first_) {
+            if (c < ' ' || c > '~') c = '?';
+        }
+    }
+
+    std::string first_;
+};
+
+/// The caller's bytes under a name nobody can guess, as long as it lives. The bytes are not copied.
+class MemoryFile {
+  public:
+    explicit MemoryFile(std::string_view bytes) {
+        static std::atomic<std::uint64_t> count{0};
+        std::random_device random;
+        name_ = "/vsimem/tinsmith-" + std::to_string(random()) + "-" + std::to_string(random()) +
+                "-" + std::to_string(++count) + ".tif";
+        // GDAL's signature knows no const; opened for reading only, it never writes.
+        auto* const data =
+            const_cast<GByte*>(reinterpret_cast<const GByte*>(bytes.data()));  // NOLINT
+        VSILFILE* const file = VSIFileFromMemBuffer(name_.c_str(), data, bytes.size(), FALSE);
+        if (file != nullptr) VSIFCloseL(file);
+    }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    ~MemoryFile() { VSIUnlink(name_.c_str()); }
+
+    const char* name() const { return name_.c_str(); }
+
+  private:
+    std::string name_;
+};
+
+struct CloseDataset {
+    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<void, CloseDataset>;
+
+/// Reads one open raster into a grid and a Terrain; each step may refuse.
+class Raster {
+  public:
+    Raster(GDALDatasetH dataset, const ReadLimits& limits, GdalScope& messages)
+        : dataset_(dataset),
+          limits_(limits),
+          messages_(messages),
+          width_(static_cast<std::size_t>(GDALGetRasterXSize(dataset))),
+          height_(static_cast<std::size_t>(GDALGetRasterYSize(dataset))) {}
+
+    Parsed<Terrain> read() {
+        using Step = std::optional<Refused> (Raster::*)();
+        for (const Step step : {&Raster::check_size, &Raster::check_band, &Raster::read_place,
+                                &Raster::read_crs, &Raster::read_elevations}) {
+            if (auto no = (this->*step)()) return {no->kind, std::move(no->fault)};
+        }
+        auto mesh = mesh_of_grid(grid_, limits_);
+        if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
+        terrain_.mesh = std::move(*mesh);
+        return std::move(terrain_);
+    }
+
+  private:
+    std::optional<Refused> check_size();
+    std::optional<Refused> check_band();
+    std::optional<Refused> read_place();
+    std::optional<Refused> read_crs();
+    std::optional<Refused> check_units(OGRSpatialReferenceH srs);
+    std::optional<Refused> read_elevations();
+    std::optional<Refused> check_blocks() const;
+    std::optional<Refused> convert();
+    bool is_no_data(double value) const;
+
+    GDALDatasetH dataset_;
+    const ReadLimits& limits_;
+    GdalScope& messages_;
+    std::size_t width_;
+    std::size_t height_;
+    GDALRasterBandH band_ = nullptr;
+    std::optional<double> no_data_;
+    Grid grid_;
+    Terrain terrain_;
+};
+
+std::optional<Refused> Raster::check_size() {
+    if (width_ > limits_.max_vertices / height_) {
+        return refused(FaultKind::TooLarge, "TOO_MANY_VERTICES",
+                       "The raster is " + std::to_string(width_) + " by " +
+                           std::to_string(height_) + " pixels; at most " +
+                           std::to_string(limits_.max_vertices) + " are taken here.");
+    }
+    return std::nullopt;
+}
+
+std::optional<Refused> Raster::check_band() {
+    if (const int bands = GDALGetRasterCount(dataset_); bands != 1) {
+        return refused(FaultKind::Unsupported, "TIFF_BANDS",
+                       "The raster has " + std::to_string(bands) +
+                           " bands, and one of elevations is needed. Pick it, for example with: "
+                           "gdal_translate -b 1 in.tif out.tif");
+    }
+    band_ = GDALGetRasterBand(dataset_, 1);
+    const GDALDataType type = GDALGetRasterDataType(band_);
+    if (GDALDataTypeIsComplex(type) != 0 || type == GDT_Int64 || type == GDT_UInt64) {
+        return refused(FaultKind::Unsupported, "TIFF_DATA_TYPE",
+                       "Elevations are integers of 8 to 32 bits or real numbers; these are " +
+                           std::string(GDALGetDataTypeName(type)) + ".");
+    }
+    int block_width = 0;
+    int block_height = 0;
+    GDALGetBlockSize(band_, &block_width, &block_height);
+    const auto block = static_cast<std::uint64_t>(std::max(block_width, 1)) *
+                       static_cast<std::uint64_t>(std::max(block_height, 1));
+    if (block > std::max(limits_.max_vertices, kSmallestBlockLimit)) {
+        return refused(FaultKind::TooLarge, "TIFF_BLOCK_SIZE",
+                       "The raster is stored in tiles of " + std::to_string(block) +
+                           " pixels each; no more than " + std::to_string(kSmallestBlockLimit) +
+                           " are taken here.");
+    }
+    int has_no_data = 0;
+    const double no_data = GDALGetRasterNoDataValue(band_, &has_no_data);
+    if (has_no_data != 0) no_data_ = no_data;
+    return std::nullopt;
+}
+
+std::optional<Refused> Raster::read_place() {
+    // x = t[0] + column * t[1] + row * t[2]; y = t[3] + column * t[4] + row * t[5], from corners
+    // of pixels. GDAL has shifted a PixelIsPoint raster so that this holds for both conventions.
+    std::array<double, 6> t{};
+    if (GDALGetGeoTransform(dataset_, t.data()) != CE_None) {
+        return refused(FaultKind::Invalid, "TIFF_NOT_GEOREFERENCED",
+                       "The raster does not say where it lies: it has no tie point and pixel "
+                       "size, nor a transformation.");
+    }
+    if (t[2] != 0.0 || t[4] != 0.0) {
+        return refused(FaultKind::Unsupported, "TIFF_ROTATED",
+                       "The raster is rotated against its coordinates. Turn it north up, for "
+                       "example with: gdalwarp in.tif out.tif");
+    }
+    grid_.origin = {t[0] + 0.5 * t[1], t[3] + 0.5 * t[5]};
+    grid_.dx = t[1];
+    grid_.dy = t[5];
+    grid_.columns = width_;
+    grid_.rows = height_;
+    return std::nullopt;
+}
+
+std::optional<Refused> Raster::read_crs() {
+    OGRSpatialReferenceH srs = GDALGetSpatialRef(dataset_);
+    if (srs == nullptr) return std::nullopt;  // unknown: metres are assumed, as for other formats
+    if (OSRIsGeographic(srs) != 0 || OSRIsGeocentric(srs) != 0) {
+        return refused(FaultKind::Unsupported, "CRS_GEOGRAPHIC",
+                       "The raster's coordinates are in degrees or geocentric. Project it to "
+                       "metres first, for example with: gdalwarp -t_srs EPSG:32633 in.tif out.tif "
+                       "(with the zone of your place).");
+    }
+    // Of a compound system the plan part counts: elevations have no name of their own here.
+    const char* const part = OSRIsProjected(srs) != 0 ? "PROJCS" : nullptr;
+    const char* const authority = OSRGetAuthorityName(srs, part);
+    const char* const code = OSRGetAuthorityCode(srs, part);
+    if (authority != nullptr && code != nullptr) {
+        terrain_.crs = normalise_crs(std::string(authority) + ":" + code).value_or("");
+    }
+    return check_units(srs);
+}
+
+std::optional<Refused> Raster::check_units(OGRSpatialReferenceH srs) {
+    char* name = nullptr;
+    const double metres = OSRGetLinearUnits(srs, &name);
+    bool known = false;
+    for (const std::string_view unit : {"metre", "foot", "US survey foot"}) {
+        // By length and not by name, of which there are many; the two feet differ by 2e-6.
+        if (std::fabs(metres - metres_per(unit)) > 1e-9) continue;
+        terrain_.unit = unit;
+        known = true;
+    }
+    if (!known) {
+        return refused(FaultKind::Unsupported, "UNIT_UNKNOWN",
+                       "The raster's coordinates are in a unit of " + std::to_string(metres) +
+                           " metres. Known are metre, foot and US survey foot.");
+    }
+    if (OSRIsCompound(srs) == 0) return std::nullopt;
+    const double vertical = OSRGetTargetLinearUnits(srs, "VERT_CS", &name);
+    if (std::fabs(vertical - metres) > 1e-9) {
+        return refused(FaultKind::Unsupported, "UNIT_VERTICAL",
+                       "The raster's plan coordinates are in " + terrain_.unit +
+                           " and its elevations in a unit of " + std::to_string(vertical) +
+                           " metres. Bring both to one unit first.");
+    }
+    return std::nullopt;
+}
+
+/// GDAL reads a block that is not in the file as no-data, or as zeros where no-data has no value:
+/// ground at sea level that nobody measured.
+std::optional<Refused> Raster::check_blocks() const {
+    if (no_data_) return std::nullopt;
+    int block_width = 0;
+    int block_height = 0;
+    GDALGetBlockSize(band_, &block_width, &block_height);
+    const auto across = (GDALGetRasterXSize(dataset_) + block_width - 1) / block_width;
+    const auto down = (GDALGetRasterYSize(dataset_) + block_height - 1) / block_height;
+    for (int y = 0; y < down; ++y) {
+        for (int x = 0; x < across; ++x) {
+            const std::string block = std::to_string(x) + "_" + std::to_string(y);
+            const std::string item = "BLOCK_OFFSET_" + block;
+            if (GDALGetMetadataItem(band_, item.c_str(), "TIFF") != nullptr) continue;
+            return refused(FaultKind::Invalid, "TIFF_BLOCK_MISSING",
+                           "The file holds no data for block " + block +
+                               " (column, row) and names no no-data value.");
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<Refused> Raster::read_elevations() {
+    if (auto no = check_blocks()) return no;
+    messages_.forget();  // what was said of the reference system is no damage
+    grid_.elevations.reserve(width_ * height_);
+    int block_width = 0;
+    int block_height = 0;
+    GDALGetBlockSize(band_, &block_width, &block_height);
+    const auto width = GDALGetRasterXSize(dataset_);
+    const auto height = GDALGetRasterYSize(dataset_);
+    // A row of blocks at a time, so that each block is decoded once.
+    const int rows_at_once = std::clamp(block_height, 1, height);
+    for (int row = 0; row < height; row += rows_at_once) {
+        const int rows = std::min(rows_at_once, height - row);
+        // Only reserved, not touched, until its data is at hand: a header may promise anything.
+        const std::size_t begin = grid_.elevations.size();
+        grid_.elevations.resize(begin + static_cast<std::size_t>(rows) * width_);
+        double* const to = grid_.elevations.data() + begin;
+        const CPLErr status =
+            GDALRasterIO(band_, GF_Read, 0, row, width, rows, to, width, rows, GDT_Float64, 0, 0);
+        if (status == CE_None && !messages_.complained()) continue;
+        return refused(FaultKind::Invalid, "TIFF_DAMAGED",
+                       "The raster cannot be read at row " + std::to_string(row) + ": " +
+                           messages_.complaint());
+    }
+    return convert();
+}
+
+bool Raster::is_no_data(double value) const {
+    if (std::isnan(value)) return true;
+    if (!no_data_) return false;
+    // The value is written as text: in a band of floats -9999.9 means the nearest float.
+    if (GDALGetRasterDataType(band_) == GDT_Float32) {
+        const double limit = std::numeric_limits<float>::max();
+        const double nearest = std::clamp(*no_data_, -limit, limit);
+        return value == static_cast<double>(static_cast<float>(nearest)) || value == *no_data_;
+    }
+    return value == *no_data_;
+}
+
+std::optional<Refused> Raster::convert() {
+    const double scale = GDALGetRasterScale(band_, nullptr);
+    const double offset = GDALGetRasterOffset(band_, nullptr);
+    const bool scaled = scale != 1.0 || offset != 0.0;
+    std::size_t wild = 0;
+    std::size_t first_wild = 0;
+    for (std::size_t i = 0; i < grid_.elevations.size(); ++i) {
+        double& elevation = grid_.elevations[i];
+        if (is_no_data(elevation)) {
+            elevation = std::numeric_limits<double>::quiet_NaN();
+            continue;
+        }
+        if (scaled) elevation = elevation * scale + offset;
+        if (std::fabs(elevation) <= kMaxCoordinate) continue;
+        if (wild++ == 0) first_wild = i;
+    }
+    if (wild == 0) return std::nullopt;
+    auto no = refused(FaultKind::Invalid, "COORDINATE_OUT_OF_RANGE",
+                      std::to_string(wild) +
+                          " elevations are beyond 1e9; the first is at the coordinate told. If "
+                          "they mean no-data, say so, for example with: gdal_translate "
+                          "-a_nodata VALUE in.tif out.tif");
+    no.fault.coordinate = {grid_.origin.x + static_cast<double>(first_wild % width_) * grid_.dx,
+                           grid_.origin.y + static_cast<double>(first_wild / width_) * grid_.dy};
+    no.fault.index = first_wild;
+    return no;
+}
+
+}  // namespace
+
+Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits) {
+    GdalScope messages;
+    const MemoryFile file(bytes);
+    constexpr std::array<const char*, 2> drivers{"GTiff", nullptr};
+    const Dataset dataset(GDALOpenEx(file.name(),
+                                     GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_INTERNAL,
+                                     drivers.data(), nullptr, nullptr));
+    if (dataset == nullptr) {
+        return {FaultKind::Syntax,
+                {"TIFF_SYNTAX", "The body is no GeoTIFF that can be read: " + messages.complaint(),
+                 ""}};
+    }
+    return Raster(dataset.get(), limits, messages).read();
+}
+
+}  // namespace tinsmith::api

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/crs.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tinsmith::api {
+namespace {
+
+TEST(Crs, OneSpelling) {
+    EXPECT_EQ(normalise_crs("epsg:32616"), "EPSG:32616");
+    EXPECT_EQ(normalise_crs("urn:ogc:def:crs:EPSG::32616"), "EPSG:32616");
+    EXPECT_EQ(normalise_crs("urn:ogc:def:crs:EPSG:9.8:32616"), "EPSG:32616");
+    EXPECT_EQ(normalise_crs("http://www.opengis.net/def/crs/EPSG/0/32616"), "EPSG:32616");
+    EXPECT_EQ(normalise_crs("urn:ogc:def:crs:OGC:1.3:CRS84"), "OGC:CRS84");
+    for (const char* bad : {"", "32616", "EPSG:", ":1", "EPSG::32616", "urn:ogc:def:crs:EPSG",
+                            "a:b:c:d", "EPSG:32616+5703", "EPSG:3 2", "urn:ogc:def:crs:a:b:c:d"}) {
+        EXPECT_EQ(normalise_crs(bad), std::nullopt) << bad;
+    }
+    EXPECT_TRUE(is_common_geographic("EPSG:4326"));
+    EXPECT_FALSE(is_common_geographic("EPSG:32616"));
+}
+
+TEST(Crs, Units) {
+    EXPECT_EQ(normalise_unit("m"), "metre");
+    EXPECT_EQ(normalise_unit("Meter"), "metre");
+    EXPECT_EQ(normalise_unit("us_survey_foot"), "US survey foot");
+    EXPECT_EQ(normalise_unit("ft"), "foot");
+    EXPECT_EQ(normalise_unit("degree"), std::nullopt);
+    EXPECT_EQ(metres_per("metre"), 1.0);
+    EXPECT_EQ(metres_per("foot"), 0.3048);
+    EXPECT_NEAR(metres_per("US survey foot"), 0.304800609601, 1e-12);
+}
+
+}  // namespace
+}  // namespace tinsmith::api
