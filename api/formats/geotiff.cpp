@@ -64,7 +64,8 @@ class GdalScope {
     void forget() { first_.clear(); }
 
   private:
-    static constexpr std::array<std::pair<const char*, const char*>, 3> kOptions{{
+    static constexpr std::array<std::pair<const char*, const char*>, 4> kOptions{{
+        {"GTIFF_REPORT_COMPD_CS", "YES"},  // else the vertical unit is not told
         {"GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR"},
         {"GDAL_PAM_ENABLED", "NO"},
         {"GDAL_GEOREF_SOURCES", "INTERNAL"},

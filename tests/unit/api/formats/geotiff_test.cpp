@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/geotiff.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/api/formats/tiff_bytes.hpp"
+
+namespace tinsmith::api {
+namespace {
+
+using core::Point3;
+using testing::TiffBytes;
+
+TiffBytes three_by_two() {
+    return TiffBytes(3, 2, {1.5F, 2, 3, 4, 5, 6.25F}).place(500000, 4000000, 10, 10);
+}
+
+void expect_fault(const std::string& bytes, FaultKind kind, const std::string& code,
+                  const ReadLimits& limits = {}) {
+    ::testing::internal::CaptureStderr();
+    const auto terrain = read_geotiff(bytes, limits);
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+    ASSERT_FALSE(terrain.ok()) << "expected " << code;
+    EXPECT_EQ(terrain.kind(), kind);
+    EXPECT_EQ(terrain.faults().at(0).code, code) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain.faults()[0].detail.find("vsimem"), std::string::npos)
+        << terrain.faults()[0].detail;
+}
+
+TEST(GeoTiff, PostsLieAtPixelCentres) {
+    const auto terrain = read_geotiff(three_by_two().projected(32616).bytes(), {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->crs, "EPSG:32616");
+    EXPECT_EQ(terrain->unit, "metre");
+    ASSERT_EQ(terrain->mesh.vertices.size(), 6U);
+    EXPECT_EQ(terrain->mesh.triangles.size(), 4U);
+    EXPECT_EQ(terrain->mesh.vertices[0], (Point3{500005, 3999995, 1.5}));
+    EXPECT_EQ(terrain->mesh.vertices[5], (Point3{500025, 3999985, 6.25}));
+}
+
+TEST(GeoTiff, PixelIsPointNamesTheCentreItself) {
+    TiffBytes tiff(2, 2, {1, 2, 3, 4});
+    const auto terrain =
+        read_geotiff(tiff.place(500000, 4000000, 10, 10, true).projected(32616).bytes(), {});
+    ASSERT_TRUE(terrain.ok());
+    EXPECT_EQ(terrain->mesh.vertices[0], (Point3{500000, 4000000, 1}));
+    EXPECT_EQ(terrain->mesh.vertices[3], (Point3{500010, 3999990, 4}));
+}
+
+TEST(GeoTiff, WithoutReferenceSystemTheNameIsEmpty) {
+    const auto terrain = read_geotiff(three_by_two().bytes(), {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->crs, "");
+    EXPECT_EQ(terrain->unit, "metre");
+}
+
+TEST(GeoTiff, FeetAreNamed) {
+    const auto terrain = read_geotiff(three_by_two().projected(2264).bytes(), {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->unit, "US survey foot");
+    EXPECT_EQ(terrain->crs, "EPSG:2264");
+}
+
+TEST(GeoTiff, NoDataIsAHole) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    TiffBytes tiff(3, 2, {1, 2, nan, 4, 5, -9999.9F});
+    const auto terrain =
+        read_geotiff(tiff.place(0, 20, 10, 10).set_text(42113, "-9999.9").bytes(), {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->mesh.vertices.size(), 4U);
+    EXPECT_EQ(terrain->mesh.triangles.size(), 2U);
+}
+
+TEST(GeoTiff, ScaleAndOffsetAreApplied) {
+    const auto terrain = read_geotiff(
+        three_by_two()
+            .set_text(42112,
+                      "<GDALMetadata><Item name=\"OFFSET\" sample=\"0\" role=\"offset\">100</Item>"
+                      "<Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item></GDALMetadata>")
+            .bytes(),
+        {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->mesh.vertices[0].z, 100.75);
+}
+
+TEST(GeoTiff, WhatIsNotTakenIsNamed) {
+    constexpr auto unsupported = FaultKind::Unsupported;
+    expect_fault(three_by_two().geographic(4326).bytes(), unsupported, "CRS_GEOGRAPHIC");
+    expect_fault(three_by_two().vertical(6360).bytes(), unsupported, "UNIT_VERTICAL");
+    expect_fault(TiffBytes(2, 2, {1, 2, 3, 4}).bytes(), FaultKind::Invalid,
+                 "TIFF_NOT_GEOREFERENCED");
+    expect_fault(TiffBytes(2, 2, {1, 2, 3, 4})
+                     .transformation({8, 6, 0, 100, 6, -8, 0, 200, 0, 0, 1, 0, 0, 0, 0, 1})
+                     .bytes(),
+                 unsupported, "TIFF_ROTATED");
+    expect_fault(TiffBytes(1, 1, {1, 2}).set_short(277, 2).set_shorts(258, {32, 32}).bytes(),
+                 unsupported, "TIFF_BANDS");
+    expect_fault(TiffBytes(1, 2, {1, 2}).place(0, 0, 1, 1).bytes(), FaultKind::Invalid,
+                 "GRID_TOO_SMALL");
+    expect_fault(TiffBytes(1, 1, {1, 2}).set_short(258, 64).set_short(339, 6).bytes(), unsupported,
+                 "TIFF_DATA_TYPE");
+    expect_fault(TiffBytes(1, 1, {1, 2}).set_short(258, 64).set_short(339, 2).bytes(), unsupported,
+                 "TIFF_DATA_TYPE");
+}
+
+TEST(GeoTiff, UndeclaredNoDataIsToldWithItsPlace) {
+    TiffBytes tiff(2, 2, {1, 2, -3.4e38F, 4});
+    const auto terrain = read_geotiff(tiff.place(0, 20, 10, 10).bytes(), {});
+    ASSERT_FALSE(terrain.ok());
+    EXPECT_EQ(terrain.faults()[0].code, "COORDINATE_OUT_OF_RANGE");
+    EXPECT_EQ(terrain.faults()[0].coordinate, (std::array<double, 2>{5, 5}));
+    EXPECT_EQ(terrain.faults()[0].index, 2U);
+}
+
+TEST(GeoTiff, LyingHeaders) {
+    constexpr auto invalid = FaultKind::Invalid;
+    // Sizes that the file does not hold.
+    expect_fault(three_by_two().set_long(256, 2'000'000'000).set_long(257, 2'000'000'000).bytes(),
+                 FaultKind::TooLarge, "TOO_MANY_VERTICES");
+    expect_fault(three_by_two().set_long(256, 3000).set_long(257, 3000).bytes(), invalid,
+                 "TIFF_BLOCK_MISSING");
+    expect_fault(three_by_two().set_long(256, 3000).set_long(257, 3000).set_long(278, 3000).bytes(),
+                 invalid, "TIFF_DAMAGED");
+    // A strip beyond the end, and one that is said not to be there.
+    expect_fault(three_by_two().set_long(273, 1'000'000).bytes(), invalid, "TIFF_DAMAGED");
+    expect_fault(three_by_two().set_long(273, 0).set_long(279, 0).bytes(), invalid,
+                 "TIFF_BLOCK_MISSING");
+    // A codec the bytes are not in.
+    expect_fault(three_by_two().set_short(259, 8).bytes(), invalid, "TIFF_DAMAGED");
+    // Tiles that are far larger than the raster.
+    expect_fault(three_by_two()
+                     .set_long(322, 65536)
+                     .set_long(323, 65536)
+                     .set_long(324, 8)
+                     .set_long(325, 24)
+                     .bytes(),
+                 FaultKind::TooLarge, "TIFF_BLOCK_SIZE");
+}
+
+TEST(GeoTiff, TruncatedAnywhere) {
+    const std::string whole = three_by_two().projected(32616).bytes();
+    ASSERT_TRUE(read_geotiff(whole, {}).ok());
+    for (std::size_t length = 0; length + 4 < whole.size(); ++length) {
+        ::testing::internal::CaptureStderr();
+        const auto terrain = read_geotiff(std::string_view(whole).substr(0, length), {});
+        EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+        ASSERT_FALSE(terrain.ok()) << length;
+    }
+}
+
+TEST(GeoTiff, AnyByteChangedIsATerrainOrAFault) {
+    const std::string whole = three_by_two().projected(32616).bytes();
+    ReadLimits limits;
+    limits.max_vertices = 100'000;
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        for (const char value : {'\0', '\1', '\x7f', '\xff'}) {
+            std::string bytes = whole;
+            bytes[at] = value;
+            const auto terrain = read_geotiff(bytes, limits);
+            if (!terrain.ok()) {
+                EXPECT_FALSE(terrain.faults().empty());
+            }
+        }
+    }
+}
+
+TEST(GeoTiff, OtherFormatsAreNotOpened) {
+    constexpr auto syntax = FaultKind::Syntax;
+    expect_fault("", syntax, "TIFF_SYNTAX");
+    expect_fault("no TIFF at all", syntax, "TIFF_SYNTAX");
+    expect_fault(
+        "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand band=\"1\" "
+        "dataType=\"Byte\"><SimpleSource><SourceFilename>/etc/passwd</SourceFilename>"
+        "</SimpleSource></VRTRasterBand></VRTDataset>",
+        syntax, "TIFF_SYNTAX");
+    expect_fault("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n", syntax,
+                 "TIFF_SYNTAX");
+}
+
+TEST(GeoTiff, Limits) {
+    ReadLimits limits;
+    limits.max_vertices = 5;
+    expect_fault(three_by_two().bytes(), FaultKind::TooLarge, "TOO_MANY_VERTICES", limits);
+    limits = {};
+    limits.max_triangles = 3;
+    expect_fault(three_by_two().bytes(), FaultKind::TooLarge, "TOO_MANY_TRIANGLES", limits);
+}
+
+TEST(GeoTiff, SeveralThreadsAtOnce) {
+    const std::string bytes = three_by_two().projected(32616).bytes();
+    std::vector<std::jthread> threads;
+    std::vector<int> good(4, 0);
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        threads.emplace_back([&, i] {
+            for (int round = 0; round < 20; ++round)
+                good[i] += read_geotiff(bytes, {}).ok();
+        });
+    }
+    threads.clear();
+    EXPECT_EQ(good, std::vector<int>(4, 20));
+}
+
+TEST(GeoTiff, TheBundledTerrain) {
+    const std::filesystem::path path =
+        std::filesystem::path(TINSMITH_SOURCE_DIR) / "tests/data/jacksboro.tif";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no bundled terrain";
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    const auto terrain = read_geotiff(bytes.str(), {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->unit, "metre");
+    EXPECT_NE(terrain->crs, "");
+    EXPECT_GT(terrain->mesh.triangles.size(), terrain->mesh.vertices.size());
+}
+
+}  // namespace
+}  // namespace tinsmith::api
