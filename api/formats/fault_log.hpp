@@ -20,6 +20,7 @@ class FaultLog {
         faults_.push_back(std::move(fault));
     }
 
+    std::size_t size() const { return faults_.size(); }
     bool empty() const { return faults_.empty(); }
     bool full() const { return faults_.size() >= most_; }
 

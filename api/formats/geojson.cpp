@@ -252,13 +252,21 @@ class FeatureList : public Value, public Container {
         : feature_(shapes, coordinates) {}
 
     Container* array(Reader&) override { return this; }
-    Value* element(Reader&) override { return &feature_; }
+    Value* element(Reader&) override {
+        empty_ = false;
+        return &feature_;
+    }
+    void close(Reader& reader) override {
+        if (!empty_) return;
+        reader.fault("SHAPE_EMPTY", "There is no Feature; there is nothing to integrate.");
+    }
 
   protected:
     std::string_view expected() const override { return "an array of Features"; }
 
   private:
     FeatureObject feature_;
+    bool empty_ = true;
 };
 
 /// The body: a FeatureCollection, a Feature or a geometry, told apart when all has been read.
@@ -293,10 +301,7 @@ class Body : public Object {
     void begun(Reader&) override { properties_.write_to(feature_.properties); }
     void ended(Reader& reader) override {
         if (type_at_fault(type_text_, reader)) return;
-        std::string_view content = "coordinates";
-        if (type_text_ == "FeatureCollection") content = "features";
-        if (type_text_ == "Feature") content = "geometry";
-        if (type_text_ == "GeometryCollection") content = "geometries";
+        const std::string_view content = content_of(type_text_);
         refuse_strangers(reader, content);
         if (!has(content)) {
             if (content == "coordinates" && !geometry_type(type_text_)) {
@@ -304,23 +309,25 @@ class Body : public Object {
             } else {
                 reader.fault("MEMBER_MISSING", quoted(content) + " is needed here.");
             }
-        } else if (content == "features") {
-            if (request_.shapes.empty() && reader.log().empty()) {
-                reader.add(FaultKind::Invalid,
-                           {"SHAPE_EMPTY", "There is no Feature; there is nothing to integrate.",
-                            pointer_to(reader.pointer(), "features")});
-            }
-        } else {
-            if (content != "geometry") {
-                own_geometry_.type = type_text_;
-                feature_.shape = finish_geometry(own_geometry_, reader);
-                feature_.properties = "{}";  // a geometry has none: they would be foreign
-            }
+        } else if (content == "geometry") {
             finish_feature(feature_, request_.shapes);
+        } else if (content != "features") {
+            own_geometry_.type = type_text_;
+            FeatureDraft around;  // a geometry has no id and no properties: they would be foreign
+            around.shape = finish_geometry(own_geometry_, reader);
+            finish_feature(around, request_.shapes);
         }
     }
 
   private:
+    /// The member that a body of this type is about.
+    static std::string_view content_of(std::string_view type) {
+        if (type == "FeatureCollection") return "features";
+        if (type == "Feature") return "geometry";
+        if (type == "GeometryCollection") return "geometries";
+        return "coordinates";
+    }
+
     static void refuse_type(Reader& reader) {
         reader.add(FaultKind::Invalid,
                    {"GEOJSON_TYPE",

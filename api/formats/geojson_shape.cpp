@@ -40,8 +40,8 @@ bool is_polygonal(GeometryType type) {
     return type == GeometryType::Polygon || type == GeometryType::MultiPolygon;
 }
 
-/// How many different positions there are, counted up to `most`, which is 3 at most: beyond the
-/// first and the first unlike it, one look at each position is enough.
+/// How many different positions there are, counted up to `most`, which is 3 at most. Ends at the
+/// last of those, so a long ring costs no more than a short one unless it stays in one place.
 std::size_t distinct(std::span<const Point2> points, std::size_t most) {
     std::size_t found = 0;
     std::array<Point2, 3> seen{};

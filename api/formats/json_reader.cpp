@@ -112,10 +112,6 @@ std::string Reader::pointer() const {
     return out;
 }
 
-std::uint64_t Reader::index() const {
-    return depth_ == 0 ? 0 : frames_[depth_ - 1].index;
-}
-
 void Reader::fault(std::string code, std::string detail) {
     add(FaultKind::Invalid, {std::move(code), std::move(detail), pointer()});
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -83,8 +82,6 @@ class Reader {
 
     /// JSON Pointer of the value being read. Names of more than 200 bytes are cut in it.
     std::string pointer() const;
-    /// Position of the element being read in its array; of the innermost open array or object.
-    std::uint64_t index() const;
 
     /// Adds a fault at the present place, or at another.
     void fault(std::string code, std::string detail);

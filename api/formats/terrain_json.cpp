@@ -165,8 +165,10 @@ class GridObject : public Object {
     }
 
   protected:
+    void begun(Reader& reader) override { faults_before_ = reader.log().size(); }
     void ended(Reader& reader) override {
-        if (!reader.log().empty()) return;  // numbers at fault would only make more faults
+        // Numbers at fault would only make more faults.
+        if (reader.log().size() > faults_before_) return;
         const std::uint64_t posts = columns_ * rows_;  // each below 2^32
         if (posts > limits_.max_vertices) {
             reader.stop(FaultKind::TooLarge, too_many("TOO_MANY_VERTICES", "posts",
@@ -189,6 +191,7 @@ class GridObject : public Object {
   private:
     Grid& grid_;
     ReadLimits limits_;
+    std::size_t faults_before_ = 0;
     std::uint64_t columns_ = 0;
     std::uint64_t rows_ = 0;
     Tuple origin_{2, Tuple::Items::Coordinate, "an origin [x, y]"};

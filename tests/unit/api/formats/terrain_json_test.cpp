@@ -152,6 +152,16 @@ TEST(TerrainJson, TellsAllFaultsAtOnce) {
                                                   "/mesh/triangles/0"}));
 }
 
+TEST(TerrainJson, AFaultElsewhereHidesNoneOfTheGrid) {
+    const auto terrain = read_terrain_json(
+        R"({"name": 1, "grid": {"origin": [0,0], "cell": [1,1], "columns": 2, "rows": 2,
+                     "elevations": [1,2,3]}})",
+        {});
+    ASSERT_FALSE(terrain.ok());
+    ASSERT_EQ(terrain.faults().size(), 2U);
+    EXPECT_EQ(terrain.faults()[1].pointer, "/grid/elevations");
+}
+
 TEST(TerrainJson, OneTerrainOnly) {
     const auto terrain = read_terrain_json(
         R"({"mesh": {"vertices": [], "triangles": []},
