@@ -44,7 +44,8 @@ bool March::connect(VertexId t) {
 
 /// Collects the edges between `at_` and t that a straight line crosses. Returns t when they can all
 /// be swapped away; the far end of the first edge when the line runs along it (and no corridor);
-/// otherwise a vertex to go through first; nothing where there is none.
+/// otherwise a vertex to go through first, which the input segment touches to within
+/// rounding; nothing where there is none.
 std::optional<VertexId> March::collect_corridor(VertexId t) {
     corridor_.clear();
     const Point2 from = tin_.plan(at_);
@@ -55,7 +56,8 @@ std::optional<VertexId> March::collect_corridor(VertexId t) {
     Side exit = departure.side;
     while (true) {
         corridor_.emplace_back(tin_.origin(exit), tin_.destination(exit));
-        if (tin_.is_fixed(exit) || tin_.separates_facets(exit)) return way_around(exit, t);
+        if (tin_.is_fixed(exit) || tin_.separates_facets(exit))
+            return end_within(exit, reach_of_rounding_);
         const Side entry = tin_.twin(exit);
         const VertexId apex = tin_.apex(entry);
         if (apex == t) return t;
@@ -65,13 +67,6 @@ std::optional<VertexId> March::collect_corridor(VertexId t) {
             case Clockwise: exit = entry.previous(); break;
         }
     }
-}
-
-/// The end of the edge that the input segment touches to within rounding.
-std::optional<VertexId> March::way_around(Side edge, VertexId t) const {
-    for (const VertexId v : {tin_.origin(edge), tin_.destination(edge)})
-        if (v != at_ && v != t && is_within_rounding(tin_.plan(v))) return v;
-    return {};
 }
 
 /// Swaps all edges of the corridor away, so that at_ and t are joined. An edge whose two triangles

@@ -28,40 +28,34 @@ double distance_to_segment(Point2 p, Point2 a, Point2 b) {
 }  // namespace
 
 /// `exit` is a -> b with a on the right of the way and b on the left, both strictly, and the end
-/// beyond it. Splits it where the input segment crosses. What can go wrong is rounding only, and
-/// then, in this order: a neighbouring double; the place where the march stands goes onto the
-/// edge; the end goes onto it; the way goes through the end of the edge that it touches.
+/// beyond it. What is one to within rounding becomes one: an end of the edge on the input segment
+/// is the crossing (so a segment that is integrated again meets the vertices of its own chain); the
+/// vertex where the march stands, or the segment's end, is when it is on the edge. Otherwise the
+/// edge is split where the input segment crosses it, or at a neighbouring double.
 bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     const VertexId a = tin_.origin(exit);
     const VertexId b = tin_.destination(exit);
-    // Earlier vertices of the chain are off the input segment by rounding, so the way from here
-    // can pass an edge's end on the other side than the input does: then it goes through that.
-    const bool a_met = orientation(start_, end_, tin_.plan(a)) != Clockwise;
-    const bool b_met = orientation(start_, end_, tin_.plan(b)) != CounterClockwise;
-    if (a_met && is_within_rounding(tin_.plan(a))) return connect(a);
-    if (b_met && is_within_rounding(tin_.plan(b))) return connect(b);
-
-    if (const std::optional<Point2> p = find_split(exit); p && !a_met && !b_met) {
+    const double near = reach_of_rounding_ / 2.0;
+    if (const std::optional<VertexId> met = end_within(exit, near)) return connect(*met);
+    if (!needs_swaps && can_absorb(exit, near)) return absorb(exit);
+    if (is_near_edge(exit, end_, near) && can_split(exit, end_))
+        return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
+    if (const std::optional<Point2> p = find_split(exit)) {
         count_crossing(exit);
         return reach(place({Location::Kind::OnEdge, exit, {}}, *p), needs_swaps);
     }
-    if (!needs_swaps && can_absorb(exit)) {
-        surgery_.absorb_apex(exit);
-        ++tally_.edges_swapped;
-        changed_.push_back(at_);
-        return true;
-    }
+    // Only rounding can forbid the split. Whatever is within its reach will do.
+    if (!needs_swaps && can_absorb(exit, reach_of_rounding_)) return absorb(exit);
     if (!tin_.twin(exit).valid() && !needs_swaps &&
-        distance_to_segment(tin_.plan(at_), tin_.plan(a), tin_.plan(b)) <= reach_of_rounding_) {
+        is_near_edge(exit, tin_.plan(at_), reach_of_rounding_)) {
         leave_mesh();
         boundary_visits_.insert(boundary_visits_.end(), {a, b});
         return true;
     }
-    if (distance_to_segment(end_, tin_.plan(a), tin_.plan(b)) <= reach_of_rounding_ &&
-        can_split(exit, end_))
+    if (is_near_edge(exit, end_, reach_of_rounding_) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
-    for (const VertexId v : {a, b})
-        if (is_within_rounding(tin_.plan(v))) return connect(v);
+    if (const std::optional<VertexId> met = end_within(exit, reach_of_rounding_))
+        return connect(*met);
     return fail(ErrorCode::NotRepresentable,
                 "no mesh of doubles holds this segment within rounding; move it, or give a snap "
                 "distance");
@@ -129,21 +123,50 @@ bool March::can_split(Side edge, Point2 p) const {
     return is_left(b, p, d) && is_left(p, a, d);
 }
 
-/// Whether the vertex on which the march stands, the apex of the edge's triangle, lies on the edge
-/// to within rounding and can be taken onto it.
-bool March::can_absorb(Side edge) const {
-    const Side across = tin_.twin(edge);
-    if (!across.valid() || tin_.apex(edge) != at_) return false;
+/// Whether p is within the distance of the edge. Filtered: costs a plain determinant where it is
+/// not.
+bool March::is_near_edge(Side edge, Point2 p, double distance) const {
     const Point2 a = tin_.plan(tin_.origin(edge));
     const Point2 b = tin_.plan(tin_.destination(edge));
-    const Point2 c = tin_.plan(at_);
-    const Point2 d = tin_.plan(tin_.apex(across));
-    return distance_to_segment(c, a, b) <= reach_of_rounding_ && is_left(a, d, c) &&
-           is_left(d, b, c);
+    const AreaEstimate area = estimate_doubled_area(a, b, p);
+    const double length_bound = std::fabs(b.x - a.x) + std::fabs(b.y - a.y);
+    if (std::fabs(area.value) > distance * length_bound + area.error) return false;
+    return distance_to_segment(p, a, b) <= distance;
 }
 
-bool March::is_within_rounding(Point2 p) const {
-    return distance_to_segment(p, start_, end_) <= reach_of_rounding_;
+/// Whether the vertex on which the march stands, the apex of the edge's triangle, is within the
+/// distance of the edge and can be taken onto it.
+bool March::can_absorb(Side edge, double distance) const {
+    const Side across = tin_.twin(edge);
+    if (!across.valid() || tin_.apex(edge) != at_) return false;
+    const Point2 c = tin_.plan(at_);
+    if (!is_near_edge(edge, c, distance)) return false;
+    const Point2 d = tin_.plan(tin_.apex(across));
+    return is_left(tin_.plan(tin_.origin(edge)), d, c) &&
+           is_left(d, tin_.plan(tin_.destination(edge)), c);
+}
+
+bool March::absorb(Side edge) {
+    surgery_.absorb_apex(edge);
+    ++tally_.edges_swapped;
+    changed_.push_back(at_);
+    return true;
+}
+
+/// The end of the edge that is nearest to the input segment, where it is within the distance.
+/// Filtered: costs two plain determinants where neither is.
+std::optional<VertexId> March::end_within(Side edge, double distance) const {
+    std::optional<VertexId> nearest;
+    for (const VertexId v : {tin_.origin(edge), tin_.destination(edge)}) {
+        const Point2 p = tin_.plan(v);
+        const AreaEstimate area = estimate_doubled_area(start_, end_, p);
+        if (v == at_ || std::fabs(area.value) > distance * length_ + area.error) continue;
+        const double off = distance_to_segment(p, start_, end_);
+        if (off > distance) continue;
+        distance = off;
+        nearest = v;
+    }
+    return nearest;
 }
 
 void March::count_crossing(Side edge) {

@@ -37,6 +37,8 @@ void March::begin(std::size_t path, Point2 start) {
 bool March::advance(Point2 end) {
     start_ = end_;
     end_ = end;
+    length_ = std::sqrt((end.x - start_.x) * (end.x - start_.x) +
+                        (end.y - start_.y) * (end.y - start_.y));
     steps_ = 0;
     boundary_visits_.clear();
     ++tally_.segments;
@@ -65,9 +67,17 @@ void March::finish() {
     at_ = {};
 }
 
-/// Makes a position that was located a vertex, on the facet's plane or edge.
-VertexId March::place(const Location& location, Point2 p) {
+/// Makes a position that was located a vertex, on the facet's plane or edge. One that is on an edge
+/// to within rounding goes onto the edge: no needle is left between them.
+VertexId March::place(Location location, Point2 p) {
     VertexId v = location.vertex;
+    if (location.kind == Location::Kind::InTriangle) {
+        for (unsigned i = 0; i < 3; ++i) {
+            const Side side(location.side.triangle(), i);
+            if (is_near_edge(side, p, reach_of_rounding_ / 2.0) && can_split(side, p))
+                location = {Location::Kind::OnEdge, side, {}};
+        }
+    }
     switch (location.kind) {
         case Location::Kind::InTriangle: {
             const TriangleId t = location.side.triangle();

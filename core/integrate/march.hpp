@@ -69,7 +69,7 @@ class March {
 
   private:
     // march.cpp
-    VertexId place(const Location& location, Point2 p);
+    VertexId place(Location location, Point2 p);
     bool follow(const Departure& departure);
     bool cross(Side exit);
     bool reach(VertexId t, bool needs_swaps);
@@ -81,15 +81,16 @@ class March {
     std::optional<Point2> find_split(Side edge) const;
     Point2 intersection(Side edge) const;
     bool can_split(Side edge, Point2 p) const;
-    bool can_absorb(Side edge) const;
-    bool is_within_rounding(Point2 p) const;
+    bool is_near_edge(Side edge, Point2 p, double distance) const;
+    bool can_absorb(Side edge, double distance) const;
+    bool absorb(Side edge);
+    std::optional<VertexId> end_within(Side edge, double distance) const;
     void count_crossing(Side edge);
     void measure(Point2 p);
 
     // connect.cpp
     bool connect(VertexId t);
     std::optional<VertexId> collect_corridor(VertexId t);
-    std::optional<VertexId> way_around(Side edge, VertexId t) const;
     bool clear_corridor(VertexId t);
 
     // outside.cpp
@@ -113,6 +114,7 @@ class March {
     VertexId at_;   ///< where the march stands; invalid: outside the mesh
     Point2 start_;  ///< the input segment
     Point2 end_;
+    double length_ = 0.0;
     std::uint64_t steps_ = 0;
     std::size_t path_ = 0;
     std::vector<Point2> outside_;      ///< the stretch outside that is being walked

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where paths run outside the mesh: concave outlines, holes, between components.
 #include <algorithm>
-#include <cmath>
 
 #include "core/integrate/march.hpp"
 #include "core/predicates/orientation.hpp"
@@ -44,8 +43,7 @@ bool March::was_visited(VertexId v) const {
 /// The nearest meeting that lies beyond the last one. Meetings within rounding of the last count as
 /// beyond it unless they are of the same edges and vertices: components may touch.
 std::optional<March::Entry> March::next_entry() const {
-    const double length = std::sqrt(along(end_));
-    const double rounding = reach_of_rounding_ * length;
+    const double rounding = reach_of_rounding_ * length_;
     double from = -rounding;
     for (const VertexId v : boundary_visits_) from = std::max(from, along(tin_.plan(v)));
 
@@ -76,20 +74,22 @@ std::optional<March::Entry> March::next_entry() const {
     return best;
 }
 
-/// Stands on the boundary at the entry. Where rounding forbids to split the edge there, at the end
-/// of it that the segment touches to within rounding.
+/// Stands on the boundary at the entry: at an end of the edge that is on the segment to within
+/// rounding, else where the segment crosses it.
 bool March::enter_by(const Entry& entry) {
     VertexId v = entry.vertex;
     if (entry.edge.valid()) {
-        const VertexId ends[] = {v, tin_.destination(entry.edge)};
-        const bool ends_here = orientation(tin_.plan(ends[0]), tin_.plan(ends[1]), end_) == Collinear;
+        const VertexId w = tin_.destination(entry.edge);
+        const bool ends_here = orientation(tin_.plan(v), tin_.plan(w), end_) == Collinear;
+        std::optional<VertexId> met = end_within(entry.edge, reach_of_rounding_ / 2.0);
         const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
-        if (p) {
+        if (!met && !p) met = end_within(entry.edge, reach_of_rounding_);
+        if (met && !ends_here) {
+            v = *met;
+        } else if (p) {
             if (!ends_here) count_crossing(entry.edge);
             v = place({Location::Kind::OnEdge, entry.edge, {}}, *p);
-        } else if (is_within_rounding(tin_.plan(ends[1]))) {
-            v = ends[1];
-        } else if (!is_within_rounding(tin_.plan(v))) {
+        } else {
             return fail(ErrorCode::NotRepresentable,
                         "no mesh of doubles holds this segment where it enters the mesh; move it");
         }

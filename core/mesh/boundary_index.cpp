@@ -29,8 +29,8 @@ std::size_t BoundaryIndex::row(double y) const {
 }
 
 void BoundaryIndex::add(VertexId v, Point2 p, Point2 q, std::vector<std::size_t>* log) {
-    const auto [left, right] = std::minmax(column(p.x), column(q.x));
-    const auto [low, high] = std::minmax(row(p.y), row(q.y));
+    const auto [left, right] = std::minmax({column(p.x), column(q.x)});
+    const auto [low, high] = std::minmax({row(p.y), row(q.y)});
     for (std::size_t r = low; r <= high; ++r) {
         for (std::size_t c = left; c <= right; ++c) {
             const std::size_t cell = r * columns_ + c;
@@ -63,7 +63,7 @@ std::vector<VertexId> BoundaryIndex::near(Point2 p, Point2 q) const {
             if (r != low) x0 = p.x + (bottom - p.y) * run;
             if (r != high) x1 = p.x + (top - p.y) * run;
         }
-        const auto [left, right] = std::minmax(column(x0), column(x1));
+        const auto [left, right] = std::minmax({column(x0), column(x1)});
         const std::size_t last = std::min(right + 1, columns_ - 1);
         for (std::size_t c = left > 0 ? left - 1 : 0; c <= last; ++c) {
             const auto& cell = cells_[r * columns_ + c];

@@ -2,6 +2,7 @@
 #include "tests/support/guarantees.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -144,7 +145,7 @@ std::vector<std::string> check_integrated(const Operation& op) {
                                   [](const Constraint& l, double x) { return l.a.x < x; });
         for (; c != constraints.end() && c->a.x <= high; ++c) {
             if (distance_to_line(c->a, s) > reach || distance_to_line(c->b, s) > reach) continue;
-            const auto [from, to] = std::minmax(along(c->a, s), along(c->b, s));
+            const auto [from, to] = std::minmax({along(c->a, s), along(c->b, s)});
             if (to < -reach || from > length + reach) continue;
             covered.emplace_back(from, to);
         }
@@ -168,24 +169,28 @@ std::vector<std::string> check_integrated(const Operation& op) {
     return broken;
 }
 
-std::vector<std::string> check_economical(const Operation& op) {
-    const core::MeshData& mesh = op.before.mesh();
-    const double reach = 2 * rounding_reach(op.before);
-    std::vector<Point2> events;
-    for (const auto& shape : op.shapes)
-        for (const auto& path : shape.paths)
-            for (const Point2 p : path.points)
-                if (op.before.triangle_at(p, reach)) events.push_back(p);
+namespace {
 
-    // Edges of the mesh once each; then the input segments themselves, which cross each other.
+/// A position that is, or calls for, a vertex. What is nearer than `radius` may be one with it.
+struct Place {
+    enum class Kind { OldVertex, Event, NewVertex };
+    Point2 p;
+    Kind kind;
+    double radius;
+};
+
+/// Proper crossings of the segments with the mesh's edges and with each other, on the mesh. Where
+/// two lines are almost parallel rounding moves their crossing along them: the radius says so.
+void add_crossings(const std::vector<Segment>& segments, const SurfaceOracle& before, double reach,
+                   std::vector<Place>& places) {
+    const core::MeshData& mesh = before.mesh();
     std::vector<Segment> edges;
     std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
     for (const auto& t : mesh.triangles)
         for (unsigned i = 0; i < 3; ++i)
-            if (seen.insert(std::minmax(t[i], t[(i + 1) % 3])).second)
+            if (seen.insert(std::minmax({t[i], t[(i + 1) % 3]})).second)
                 edges.push_back({mesh.vertices[t[i]].plan(), mesh.vertices[t[(i + 1) % 3]].plan()});
     const std::size_t mesh_edges = edges.size();
-    const std::vector<Segment> segments = segments_of(op.shapes);
     edges.insert(edges.end(), segments.begin(), segments.end());
     std::vector<std::uint32_t> by_x(edges.size());
     double longest = 0.0;
@@ -195,11 +200,13 @@ std::vector<std::string> check_economical(const Operation& op) {
     }
     const auto left = [&](std::uint32_t i) { return std::min(edges[i].a.x, edges[i].b.x); };
     std::sort(by_x.begin(), by_x.end(), [&](auto l, auto r) { return left(l) < left(r); });
-    for (const Segment& s : segments) {
-        const auto [low, high] = std::minmax(s.a.x, s.b.x);
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        const Segment& s = segments[k];
+        const auto [low, high] = std::minmax({s.a.x, s.b.x});
         auto at = std::lower_bound(by_x.begin(), by_x.end(), low - longest,
                                    [&](std::uint32_t i, double x) { return left(i) < x; });
         for (; at != by_x.end() && left(*at) <= high; ++at) {
+            if (*at >= mesh_edges && *at - mesh_edges <= k) continue;  // each pair once
             const Segment& e = edges[*at];
             const Quad ea = area(s.a, s.b, e.a), eb = area(s.a, s.b, e.b);
             if (sign(ea) * sign(eb) >= 0) continue;
@@ -207,55 +214,90 @@ std::vector<std::string> check_economical(const Operation& op) {
             const Quad share = ea / (ea - eb);
             const Point2 p{static_cast<double>(Quad(e.a.x) + (Quad(e.b.x) - Quad(e.a.x)) * share),
                            static_cast<double>(Quad(e.a.y) + (Quad(e.b.y) - Quad(e.a.y)) * share)};
-            if (*at < mesh_edges || op.before.triangle_at(p, reach)) events.push_back(p);
+            if (*at >= mesh_edges && !before.triangle_at(p, reach)) continue;
+            const double sine = static_cast<double>(ea > eb ? ea - eb : eb - ea) /
+                                std::hypot(s.b.x - s.a.x, s.b.y - s.a.y) /
+                                std::hypot(e.b.x - e.a.x, e.b.y - e.a.y);
+            places.push_back({p, Place::Kind::Event, reach / sine});
         }
     }
+}
 
-    // Clusters of positions that are one to within rounding; those with an old vertex cost nothing.
-    struct Place {
-        Point2 p;
-        int kind;  // 0 old vertex, 1 event, 2 new vertex
-    };
-    std::vector<Place> places;
-    for (const Point2 p : events) places.push_back({p, 1});
-    for (const auto& v : mesh.vertices) places.push_back({v.plan(), 0});
-    const core::MeshData after = op.after.to_data();
-    for (std::size_t v = mesh.vertices.size(); v < after.vertices.size(); ++v)
-        places.push_back({after.vertices[v].plan(), 2});
+/// Groups of places that may be one position.
+std::vector<std::vector<std::size_t>> clusters_of(std::vector<Place>& places) {
     std::sort(places.begin(), places.end(), [](const Place& l, const Place& r) {
         return l.p.x != r.p.x ? l.p.x < r.p.x : l.p.y < r.p.y;
     });
-    std::vector<std::string> broken;
+    double widest = 0.0;
+    for (const Place& place : places) widest = std::max(widest, place.radius);
     std::vector<bool> taken(places.size(), false);
+    std::vector<std::vector<std::size_t>> clusters;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        if (taken[i] || places[i].kind == 0) continue;
+        if (taken[i] || places[i].kind == Place::Kind::OldVertex) continue;
         std::vector<std::size_t> cluster{i};
         taken[i] = true;
-        std::size_t count[3] = {0, 0, 0};
-        std::set<std::pair<double, double>> distinct;
         for (std::size_t k = 0; k < cluster.size(); ++k) {
-            const Place& here = places[cluster[k]];
-            ++count[here.kind];
-            if (here.kind == 1) distinct.insert({here.p.x, here.p.y});
+            const Place here = places[cluster[k]];
             const auto visit = [&](std::size_t j) {
-                if (!taken[j] && std::hypot(places[j].p.x - here.p.x, places[j].p.y - here.p.y) <= reach) {
-                    taken[j] = true;
-                    cluster.push_back(j);
-                }
+                const double distance = std::hypot(places[j].p.x - here.p.x, places[j].p.y - here.p.y);
+                if (taken[j] || distance > std::max(here.radius, places[j].radius)) return;
+                taken[j] = true;
+                cluster.push_back(j);
             };
-            for (std::size_t j = cluster[k]; j-- > 0 && places[j].p.x >= here.p.x - reach;) visit(j);
-            for (std::size_t j = cluster[k] + 1; j < places.size() && places[j].p.x <= here.p.x + reach; ++j)
+            for (std::size_t j = cluster[k]; j-- > 0 && places[j].p.x >= here.p.x - widest;) visit(j);
+            for (std::size_t j = cluster[k] + 1;
+                 j < places.size() && places[j].p.x <= here.p.x + widest; ++j)
                 visit(j);
         }
-        const Point2 p = places[i].p;
-        if (count[2] > 0 && count[1] == 0)
-            broken.push_back(words("G8 needless vertex at ", p.x, " ", p.y));
-        else if (count[1] > 0 && count[0] == 0 && count[2] == 0)
-            broken.push_back(words("G8 no vertex at ", p.x, " ", p.y));
-        else if (count[2] > distinct.size())
-            broken.push_back(words("G8 ", count[2], " vertices for ", distinct.size(), " events at ", p.x, " ", p.y));
-        else if (cluster.size() <= 3 && distinct.size() == 1 && count[0] == 0 && count[2] != 1)
-            broken.push_back(words("G8 ", count[2], " vertices for one event at ", p.x, " ", p.y));
+        clusters.push_back(std::move(cluster));
+    }
+    return clusters;
+}
+
+}  // namespace
+
+std::vector<std::string> check_economical(const Operation& op) {
+    const core::MeshData& mesh = op.before.mesh();
+    const double reach = 2 * rounding_reach(op.before);
+    // The same position or segment, in either direction, counts once however often it is given.
+    std::set<std::pair<double, double>> points;
+    std::map<std::array<double, 4>, Segment> distinct;
+    for (const auto& shape : op.shapes)
+        for (const auto& path : shape.paths)
+            for (const Point2 p : path.points) points.insert({p.x, p.y});
+    for (const Segment& s : segments_of(op.shapes)) {
+        const bool forward = s.a.x != s.b.x ? s.a.x < s.b.x : s.a.y < s.b.y;
+        const Segment t = forward ? s : Segment{s.b, s.a};
+        distinct.insert({{t.a.x, t.a.y, t.b.x, t.b.y}, t});
+    }
+    std::vector<Segment> segments;
+    for (const auto& [key, s] : distinct) segments.push_back(s);
+
+    std::vector<Place> places;
+    for (const auto& [x, y] : points)
+        if (op.before.triangle_at({x, y}, reach)) places.push_back({{x, y}, Place::Kind::Event, reach});
+    add_crossings(segments, op.before, reach, places);
+    for (const auto& v : mesh.vertices) places.push_back({v.plan(), Place::Kind::OldVertex, reach});
+    const core::MeshData after = op.after.to_data();
+    for (std::size_t v = mesh.vertices.size(); v < after.vertices.size(); ++v)
+        places.push_back({after.vertices[v].plan(), Place::Kind::NewVertex, reach});
+
+    std::vector<std::string> broken;
+    for (const auto& cluster : clusters_of(places)) {
+        std::size_t old = 0, events = 0, added = 0, surely_on_mesh = 0;
+        for (const std::size_t i : cluster) {
+            old += places[i].kind == Place::Kind::OldVertex;
+            events += places[i].kind == Place::Kind::Event;
+            added += places[i].kind == Place::Kind::NewVertex;
+            surely_on_mesh += places[i].kind == Place::Kind::Event &&
+                              op.before.triangle_at(places[i].p, -places[i].radius).has_value();
+        }
+        // One event alone is one vertex, exactly, unless it is within rounding of the outline.
+        // Several that may be one are one at least.
+        const bool right = added <= events && (surely_on_mesh == 0 || old + added > 0);
+        if (!right)
+            broken.push_back(words("G8 at ", places[cluster[0]].p.x, " ", places[cluster[0]].p.y, ": ",
+                                   events, " events, ", old, " old and ", added, " new vertices"));
     }
     return broken;
 }
