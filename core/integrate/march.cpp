@@ -24,7 +24,8 @@ void March::begin(std::size_t path, Point2 start) {
     path_ = path;
     end_ = start;
     outside_.clear();
-    const Location location = locate(tin_, start, tin_.hint(start));
+    Location location = locate(tin_, start, tin_.hint(start));
+    if (location.kind == Location::Kind::Outside) location = locate_on_boundary(start);
     if (location.kind == Location::Kind::Outside) {
         at_ = {};
         outside_.push_back(start);

@@ -98,6 +98,7 @@ class March {
     bool enter();
     std::optional<Entry> next_entry() const;
     bool enter_by(const Entry& entry);
+    Location locate_on_boundary(Point2 p) const;
     void leave_mesh();
     void close_outside();
     double along(Point2 p) const;

@@ -65,6 +65,10 @@ std::optional<March::Entry> March::next_entry() const {
             if (is_within || a == start_) offer({along(a), v, {}}, was_visited(v));
             continue;
         }
+        if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0)) {
+            offer({along(end_), v, edge}, was_visited(v) || was_visited(w));
+            continue;
+        }
         const Orientation turn_b = orientation(start_, end_, b);
         if (turn_b == Collinear || turn_a == turn_b) continue;
         // The mesh is on the left of a -> b: the segment enters from its right.
@@ -74,14 +78,25 @@ std::optional<March::Entry> March::next_entry() const {
     return best;
 }
 
+/// The boundary edge next to the position, where it is on it to within rounding.
+Location March::locate_on_boundary(Point2 p) const {
+    for (const VertexId v : tin_.boundary().near(p, p)) {
+        if (v.index() >= tin_.vertex_count()) continue;
+        const Side edge = boundary_side_from(tin_, v);
+        if (edge.valid() && is_near_edge(edge, p, reach_of_rounding_ / 2.0) && can_split(edge, p))
+            return {Location::Kind::OnEdge, edge, {}};
+    }
+    return {};
+}
+
 /// Stands on the boundary at the entry: at an end of the edge that is on the segment to within
 /// rounding, else where the segment crosses it.
 bool March::enter_by(const Entry& entry) {
     VertexId v = entry.vertex;
     if (entry.edge.valid()) {
-        const VertexId w = tin_.destination(entry.edge);
-        const bool ends_here = orientation(tin_.plan(v), tin_.plan(w), end_) == Collinear;
-        std::optional<VertexId> met = end_within(entry.edge, reach_of_rounding_ / 2.0);
+        const double near = reach_of_rounding_ / 2.0;
+        const bool ends_here = is_near_edge(entry.edge, end_, near) && can_split(entry.edge, end_);
+        std::optional<VertexId> met = end_within(entry.edge, near);
         const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
         if (!met && !p) met = end_within(entry.edge, reach_of_rounding_);
         if (met && !ends_here) {

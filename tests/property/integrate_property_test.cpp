@@ -36,9 +36,11 @@ bool same_bytes(const MeshData& a, const MeshData& b) {
            same(a.constraints, b.constraints);
 }
 
+bool is_extreme(MeshKind kind) { return kind == MeshKind::FarAway || kind == MeshKind::Needles; }
+
 /// One mesh, a few operations on it. Returns what broke.
 std::vector<std::string> try_seed(std::uint64_t seed, std::uint64_t& operations,
-                                  std::uint64_t& refused) {
+                                  std::uint64_t& refused, std::uint64_t& unrepresentable) {
     Random random(seed);
     const auto kind = static_cast<MeshKind>(random() % test::kMeshKinds);
     const int columns = 1 + static_cast<int>(random() % 9);
@@ -64,7 +66,10 @@ std::vector<std::string> try_seed(std::uint64_t seed, std::uint64_t& operations,
             ++refused;
             const ErrorCode code = report.errors()[0].code;
             if (!same_bytes(before, tin.to_data())) return {"a refused request changed the mesh"};
-            if (code != ErrorCode::OutsideMesh)
+            // At a detail of some ulps there may be no mesh of doubles to be had.
+            if (code == ErrorCode::NotRepresentable && is_extreme(kind))
+                ++unrepresentable;
+            else if (code != ErrorCode::OutsideMesh)
                 return {std::string(code_name(code)) + ": " + report.errors()[0].detail};
             continue;
         }
@@ -87,9 +92,9 @@ std::vector<std::string> try_seed(std::uint64_t seed, std::uint64_t& operations,
 TEST(IntegrateProperty, GuaranteesHoldOnRandomMeshesAndShapes) {
     const std::uint64_t wanted = number_from("TINSMITH_OPERATIONS", 4000);
     const std::uint64_t only = number_from("TINSMITH_SEED", 0);
-    std::uint64_t operations = 0, refused = 0, failures = 0;
+    std::uint64_t operations = 0, refused = 0, unrepresentable = 0, failures = 0;
     for (std::uint64_t seed = only != 0 ? only : 1; operations < wanted; ++seed) {
-        const auto broken = try_seed(seed, operations, refused);
+        const auto broken = try_seed(seed, operations, refused, unrepresentable);
         if (!broken.empty()) {
             ++failures;
             std::string text;
@@ -99,7 +104,9 @@ TEST(IntegrateProperty, GuaranteesHoldOnRandomMeshesAndShapes) {
         }
         if (only != 0 || failures >= 20) break;
     }
-    std::cout << operations << " operations, " << refused << " of them outside the mesh\n";
+    EXPECT_LE(unrepresentable, 1 + operations / 500);
+    std::cout << operations << " operations, " << refused << " refused, " << unrepresentable
+              << " of those because no mesh of doubles would do\n";
 }
 
 }  // namespace
