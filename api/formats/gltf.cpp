@@ -19,7 +19,7 @@
 namespace tinsmith::api {
 namespace {
 
-/// Draco numbers corners with 32 signed bits.
+/// Draco counts corners in ints.
 constexpr std::size_t kMostTriangles = std::numeric_limits<std::int32_t>::max() / 3;
 /// 2^32 - 1 is no index in glTF.
 constexpr std::size_t kMostVertices = std::numeric_limits<std::uint32_t>::max() - 1;

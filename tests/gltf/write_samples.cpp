@@ -70,10 +70,11 @@ void write_all(const std::string& directory) {
     write(directory, "draco_bare", park, {.constraints = false, .normals = false});
     write(directory, "plain", park, {.compression = Compression::None});
     write(directory, "plain_z_up", park, {.compression = Compression::None, .up = UpAxis::Z});
-    // 30 km, one primitive of 22 bits; 12 km cut into tiles; 60 km with a node for each tile.
+    // 30 km, one primitive of 22 bits; 12 km cut into tiles; 12 km finer still, with a
+    // node for each tile.
     write(directory, "county", hills(150, 200), {});
     write(directory, "tiles", hills(60, 200), {.tolerance = 0x1p-10});
-    write(directory, "nodes", hills(90, 667), {.tolerance = 0x1p-12});
+    write(directory, "nodes", hills(40, 300), {.tolerance = 0x1p-12});
     MeshData huge = hills(20, 100);
     const auto first = static_cast<std::uint32_t>(huge.vertices.size());
     huge.vertices.push_back({800000.1, 3980000.2, 3.3});
