@@ -62,9 +62,14 @@ std::optional<VertexId> March::collect_corridor(VertexId t) {
         const VertexId apex = tin_.apex(entry);
         if (apex == t) return t;
         switch (orientation(from, to, tin_.plan(apex))) {
-            case Collinear: return apex;
-            case CounterClockwise: exit = entry.next(); break;
-            case Clockwise: exit = entry.previous(); break;
+            case Collinear:
+                return apex;
+            case CounterClockwise:
+                exit = entry.next();
+                break;
+            case Clockwise:
+                exit = entry.previous();
+                break;
         }
     }
 }
@@ -76,7 +81,8 @@ bool March::clear_corridor(VertexId t) {
     const Point2 from = tin_.plan(at_);
     const Point2 to = tin_.plan(t);
     const std::size_t budget = 64 + 16 * corridor_.size() * corridor_.size();
-    for (const auto& [p, q] : corridor_) changed_.insert(changed_.end(), {p, q});
+    for (const auto& [p, q] : corridor_)
+        changed_.insert(changed_.end(), {p, q});
     for (std::size_t i = 0; i < corridor_.size(); ++i) {
         if (i > budget)
             return fail(ErrorCode::StepBudget, "swaps did not clear the way within their budget");

@@ -14,7 +14,9 @@ using enum Orientation;
 
 namespace {
 
-bool is_before(Point2 p, Point2 q) { return p.x != q.x ? p.x < q.x : p.y < q.y; }
+bool is_before(Point2 p, Point2 q) {
+    return p.x != q.x ? p.x < q.x : p.y < q.y;
+}
 
 double distance_to_segment(Point2 p, Point2 a, Point2 b) {
     const double dx = b.x - a.x, dy = b.y - a.y;

@@ -66,7 +66,8 @@ bool Improver::should_swap(Side s) const {
     // Cocircular to within rounding: either diagonal will do, so the one that is there stays.
     constexpr double kRounding = 1e-13;
     if (!(first + second < -kRounding * (std::fabs(first) + std::fabs(second)))) return false;
-    if (!is_left(a.plan(), d.plan(), c.plan()) || !is_left(d.plan(), b.plan(), c.plan())) return false;
+    if (!is_left(a.plan(), d.plan(), c.plan()) || !is_left(d.plan(), b.plan(), c.plan()))
+        return false;
     const double now = std::min(smallest_angle_measure(a.point(), b.point(), c.point()),
                                 smallest_angle_measure(b.point(), a.point(), d.point()));
     const double then = std::min(smallest_angle_measure(a.point(), d.point(), c.point()),

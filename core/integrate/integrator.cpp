@@ -50,9 +50,9 @@ Errors check_shapes(std::span<const Shape> shapes) {
                 place.path = p;
                 place.point = i;
                 if (finite) place.position = points[i];
-                errors.push_back({finite ? ErrorCode::CoordinateOutOfRange
-                                         : ErrorCode::CoordinateNotFinite,
-                                  "a coordinate is not finite or out of range", place});
+                errors.push_back(
+                    {finite ? ErrorCode::CoordinateOutOfRange : ErrorCode::CoordinateNotFinite,
+                     "a coordinate is not finite or out of range", place});
             }
         }
     }
@@ -202,15 +202,15 @@ bool encloses(const Shape& shape, Point2 p) {
 bool encloses_mesh(const Tin& tin, std::span<const Shape> shapes) {
     const std::vector<VertexId> vertices = component_vertices(tin);
     return std::any_of(shapes.begin(), shapes.end(), [&](const Shape& shape) {
-        return std::any_of(vertices.begin(), vertices.end(), [&](VertexId v) {
-            return encloses(shape, tin.plan(v));
-        });
+        return std::any_of(vertices.begin(), vertices.end(),
+                           [&](VertexId v) { return encloses(shape, tin.plan(v)); });
     });
 }
 
 std::string describe(Point2 low, Point2 high) {
     char text[160];
-    std::snprintf(text, sizeof text, "x %.3f to %.3f, y %.3f to %.3f", low.x, high.x, low.y, high.y);
+    std::snprintf(text, sizeof text, "x %.3f to %.3f, y %.3f to %.3f", low.x, high.x, low.y,
+                  high.y);
     return text;
 }
 
@@ -237,9 +237,10 @@ Error outside_error(const Tin& tin, std::span<const Shape> shapes) {
                                ? *low
                                : shapes[0].paths[0].points[0];
     const Bounds& box = tin.bounds();
-    const bool like_degrees = low->x >= -180.0 && high->x <= 180.0 && low->y >= -90.0 &&
-                              high->y <= 90.0;
-    const bool mesh_is_far = box.min.x > 180.0 || box.max.x < -180.0 || box.min.y > 90.0 || box.max.y < -90.0;
+    const bool like_degrees =
+        low->x >= -180.0 && high->x <= 180.0 && low->y >= -90.0 && high->y <= 90.0;
+    const bool mesh_is_far =
+        box.min.x > 180.0 || box.max.x < -180.0 || box.min.y > 90.0 || box.max.y < -90.0;
     if (like_degrees && mesh_is_far)
         error.detail += "; its coordinates look like degrees of longitude and latitude";
     return error;

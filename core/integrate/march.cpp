@@ -15,8 +15,8 @@ using enum Orientation;
 March::March(Surgery& surgery, const MarchLimits& limits)
     : surgery_(surgery), tin_(surgery.tin()), limits_(limits) {
     const Bounds& box = tin_.bounds();
-    const double largest = std::max({std::fabs(box.min.x), std::fabs(box.min.y),
-                                     std::fabs(box.max.x), std::fabs(box.max.y)});
+    const double largest = std::max(
+        {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
     reach_of_rounding_ = 4.0 * ulp(largest);
 }
 
@@ -42,6 +42,7 @@ bool March::advance(Point2 end) {
                         (end.y - start_.y) * (end.y - start_.y));
     steps_ = 0;
     boundary_visits_.clear();
+    spent_edges_.clear();
     ++tally_.segments;
     if (!within_budget()) return false;
     while (true) {
@@ -86,10 +87,12 @@ VertexId March::place(Location location, Point2 p) {
             break;
         }
         case Location::Kind::OnEdge:
-            v = surgery_.split_edge(location.side, {p.x, p.y, elevation_on(tin_, location.side, p)});
+            v = surgery_.split_edge(location.side,
+                                    {p.x, p.y, elevation_on(tin_, location.side, p)});
             break;
         case Location::Kind::OnVertex:
-        case Location::Kind::Outside: return v;
+        case Location::Kind::Outside:
+            return v;
     }
     changed_.push_back(v);
     return v;
@@ -127,7 +130,8 @@ bool March::cross(Side exit) {
                 return reach(place({Location::Kind::InTriangle, exit, {}}, end_), needs_swaps);
             case Collinear:
                 return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
-            case Clockwise: break;
+            case Clockwise:
+                break;
         }
         if (tin_.is_fixed(exit) || tin_.separates_facets(exit))
             return cross_facet_edge(exit, needs_swaps);
@@ -140,8 +144,12 @@ bool March::cross(Side exit) {
                 if (tin_.plan(apex) != end_ && is_ahead(tin_.plan(apex), tin_.plan(at_), end_))
                     return reach(place({Location::Kind::InTriangle, entry, {}}, end_), true);
                 return reach(apex, true);
-            case CounterClockwise: exit = entry.next(); break;
-            case Clockwise: exit = entry.previous(); break;
+            case CounterClockwise:
+                exit = entry.next();
+                break;
+            case Clockwise:
+                exit = entry.previous();
+                break;
         }
     }
 }

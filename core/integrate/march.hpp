@@ -102,7 +102,6 @@ class March {
     void leave_mesh();
     void close_outside();
     double along(Point2 p) const;
-    bool was_visited(VertexId v) const;
 
     Surgery& surgery_;
     const Tin& tin_;
@@ -118,9 +117,11 @@ class March {
     double length_ = 0.0;
     std::uint64_t steps_ = 0;
     std::size_t path_ = 0;
-    std::vector<Point2> outside_;      ///< the stretch outside that is being walked
+    std::vector<Point2> outside_;            ///< the stretch outside that is being walked
     std::vector<VertexId> boundary_visits_;  ///< where this segment met the boundary
-    std::vector<std::pair<VertexId, VertexId>> corridor_;  ///< edges between at_ and the next vertex
+    std::vector<VertexId> spent_edges_;      ///< boundary edges that led back to one of those
+    std::vector<std::pair<VertexId, VertexId>>
+        corridor_;  ///< edges between at_ and the next vertex
 };
 
 }  // namespace tinsmith::core

@@ -16,7 +16,8 @@ namespace {
 /// Smallest and first percentile of the measures, in degrees; zeros where there is none.
 std::pair<double, double> summarize(std::vector<double>& measures) {
     if (measures.empty()) return {0.0, 0.0};
-    const auto percentile = measures.begin() + static_cast<std::ptrdiff_t>((measures.size() - 1) / 100);
+    const auto percentile =
+        measures.begin() + static_cast<std::ptrdiff_t>((measures.size() - 1) / 100);
     std::nth_element(measures.begin(), percentile, measures.end());
     const double least = *std::min_element(measures.begin(), percentile + 1);
     return {angle_degrees(least), angle_degrees(*percentile)};

@@ -12,7 +12,8 @@ using enum Orientation;
 /// A place where the segment meets the boundary coming from outside.
 struct March::Entry {
     double along;  ///< growing along the segment
-    VertexId vertex;  ///< meets this vertex; or, when `edge` is valid, crosses the edge that it starts
+    VertexId
+        vertex;  ///< meets this vertex; or, when `edge` is valid, crosses the edge that it starts
     Side edge;
 };
 
@@ -36,16 +37,21 @@ double March::along(Point2 p) const {
     return (p.x - start_.x) * (end_.x - start_.x) + (p.y - start_.y) * (end_.y - start_.y);
 }
 
-bool March::was_visited(VertexId v) const {
-    return std::find(boundary_visits_.begin(), boundary_visits_.end(), v) != boundary_visits_.end();
+namespace {
+
+bool contains(const std::vector<VertexId>& vertices, VertexId v) {
+    return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
 }
+
+}  // namespace
 
 /// The nearest meeting that lies beyond the last one. Meetings within rounding of the last count as
 /// beyond it unless they are of the same edges and vertices: components may touch.
 std::optional<March::Entry> March::next_entry() const {
     const double rounding = reach_of_rounding_ * length_;
     double from = -rounding;
-    for (const VertexId v : boundary_visits_) from = std::max(from, along(tin_.plan(v)));
+    for (const VertexId v : boundary_visits_)
+        from = std::max(from, along(tin_.plan(v)));
 
     std::optional<Entry> best;
     const auto offer = [&](Entry entry, bool is_known) {
@@ -55,25 +61,29 @@ std::optional<March::Entry> March::next_entry() const {
     for (const VertexId v : tin_.boundary().near(start_, end_)) {
         if (v.index() >= tin_.vertex_count()) continue;
         const Side edge = boundary_side_from(tin_, v);
-        if (!edge.valid()) continue;
+        if (!edge.valid() || contains(spent_edges_, v)) continue;
         const VertexId w = tin_.destination(edge);
         const Point2 a = tin_.plan(v);
         const Point2 b = tin_.plan(w);
         const Orientation turn_a = orientation(start_, end_, a);
         if (turn_a == Collinear) {
-            const bool is_within = is_ahead(start_, end_, a) && (a == end_ || is_ahead(end_, start_, a));
-            if (is_within || a == start_) offer({along(a), v, {}}, was_visited(v));
+            const bool is_within =
+                is_ahead(start_, end_, a) && (a == end_ || is_ahead(end_, start_, a));
+            if (is_within || a == start_) offer({along(a), v, {}}, contains(boundary_visits_, v));
             continue;
         }
         if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0)) {
-            offer({along(end_), v, edge}, was_visited(v) || was_visited(w));
+            offer({along(end_), v, edge},
+                  contains(boundary_visits_, v) || contains(boundary_visits_, w));
             continue;
         }
         const Orientation turn_b = orientation(start_, end_, b);
         if (turn_b == Collinear || turn_a == turn_b) continue;
         // The mesh is on the left of a -> b: the segment enters from its right.
-        if (orientation(a, b, start_) != Clockwise || orientation(a, b, end_) == Clockwise) continue;
-        offer({along(intersection(edge)), v, edge}, was_visited(v) || was_visited(w));
+        if (orientation(a, b, start_) != Clockwise || orientation(a, b, end_) == Clockwise)
+            continue;
+        offer({along(intersection(edge)), v, edge},
+              contains(boundary_visits_, v) || contains(boundary_visits_, w));
     }
     return best;
 }
@@ -89,8 +99,8 @@ Location March::locate_on_boundary(Point2 p) const {
     return {};
 }
 
-/// Stands on the boundary at the entry: at an end of the edge that is on the segment to within
-/// rounding, else where the segment crosses it.
+/// Stands on the boundary at the entry, if it is not one that the segment had already: at an end of
+/// the edge that is on the segment to within rounding, else where the segment crosses it.
 bool March::enter_by(const Entry& entry) {
     VertexId v = entry.vertex;
     if (entry.edge.valid()) {
@@ -100,6 +110,11 @@ bool March::enter_by(const Entry& entry) {
         const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
         if (!met && !p) met = end_within(entry.edge, reach_of_rounding_);
         if (met && !ends_here) {
+            // Back at a vertex that the segment left: this edge brings nothing new.
+            if (contains(boundary_visits_, *met)) {
+                spent_edges_.push_back(v);
+                return true;
+            }
             v = *met;
         } else if (p) {
             if (!ends_here) count_crossing(entry.edge);
@@ -128,8 +143,9 @@ void March::leave_mesh() {
 /// Lists the stretch outside (or the path's only point), unless it is of no length, which happens
 /// where components touch.
 void March::close_outside() {
-    const bool has_length = outside_.size() == 1 || std::any_of(outside_.begin(), outside_.end(),
-                                        [this](Point2 p) { return p != outside_.front(); });
+    const bool has_length =
+        outside_.size() == 1 || std::any_of(outside_.begin(), outside_.end(),
+                                            [this](Point2 p) { return p != outside_.front(); });
     if (has_length) tally_.outside.push_back({path_, outside_});
     outside_.clear();
 }

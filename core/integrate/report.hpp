@@ -10,8 +10,8 @@ namespace tinsmith::core {
 
 /// A stretch of an input path that lies outside the mesh and was skipped.
 struct OutsidePart {
-    std::size_t path = 0;         ///< index into the shape's paths
-    std::vector<Point2> points;   ///< from where the path leaves the mesh to where it comes back
+    std::size_t path = 0;        ///< index into the shape's paths
+    std::vector<Point2> points;  ///< from where the path leaves the mesh to where it comes back
 };
 
 /// Smallest angles (3D, degrees) of the triangles an operation touched.
@@ -24,8 +24,8 @@ struct AngleSummary {
 
 /// What integrating one shape did and what it can promise.
 struct ShapeReport {
-    std::uint64_t segments = 0;        ///< input segments of nonzero length
-    std::uint64_t crossings = 0;       ///< proper crossings with edges of the mesh before the request
+    std::uint64_t segments = 0;   ///< input segments of nonzero length
+    std::uint64_t crossings = 0;  ///< proper crossings with edges of the mesh before the request
     std::uint64_t vertices_added = 0;
     std::uint64_t triangles_added = 0;
     std::uint64_t edges_swapped = 0;

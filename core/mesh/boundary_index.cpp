@@ -20,7 +20,8 @@ BoundaryIndex::BoundaryIndex(Point2 min, Point2 max, std::size_t edges) : min_(m
 // rounding does. What lies outside the box counts to the nearest cell.
 std::size_t BoundaryIndex::column(double x) const {
     const double cell = (x - min_.x) * cells_per_x_;
-    return cell <= 0.0 ? 0 : std::min(columns_ - 1, static_cast<std::size_t>(std::min(cell, 4096.0)));
+    return cell <= 0.0 ? 0
+                       : std::min(columns_ - 1, static_cast<std::size_t>(std::min(cell, 4096.0)));
 }
 
 std::size_t BoundaryIndex::row(double y) const {
@@ -34,7 +35,8 @@ void BoundaryIndex::add(VertexId v, Point2 p, Point2 q, std::vector<std::size_t>
     for (std::size_t r = low; r <= high; ++r) {
         for (std::size_t c = left; c <= right; ++c) {
             const std::size_t cell = r * columns_ + c;
-            if (std::find(cells_[cell].begin(), cells_[cell].end(), v) != cells_[cell].end()) continue;
+            if (std::find(cells_[cell].begin(), cells_[cell].end(), v) != cells_[cell].end())
+                continue;
             cells_[cell].push_back(v);
             if (log != nullptr) log->push_back(cell);
         }
@@ -42,7 +44,8 @@ void BoundaryIndex::add(VertexId v, Point2 p, Point2 q, std::vector<std::size_t>
 }
 
 void BoundaryIndex::remove_newest(const std::vector<std::size_t>& cells) {
-    for (auto cell = cells.rbegin(); cell != cells.rend(); ++cell) cells_[*cell].pop_back();
+    for (auto cell = cells.rbegin(); cell != cells.rend(); ++cell)
+        cells_[*cell].pop_back();
 }
 
 std::vector<VertexId> BoundaryIndex::near(Point2 p, Point2 q) const {

@@ -78,12 +78,14 @@ void TinBuilder::check_coordinates() {
             place.vertex = v;
             if (!std::isfinite(value)) {
                 fault(ErrorCode::CoordinateNotFinite,
-                      "vertex " + std::to_string(v) + " has a coordinate that is not finite", place);
+                      "vertex " + std::to_string(v) + " has a coordinate that is not finite",
+                      place);
                 break;
             }
             if (!in_coordinate_range(value)) {
                 fault(ErrorCode::CoordinateOutOfRange,
-                      "vertex " + std::to_string(v) + " has a coordinate out of range: magnitudes " +
+                      "vertex " + std::to_string(v) +
+                          " has a coordinate out of range: magnitudes " +
                           "from 1e-60 to 1e15, and zero, are accepted",
                       place);
                 break;
@@ -105,13 +107,15 @@ void TinBuilder::check_triangles() {
         if (!errors_.empty() && errors_.front().code == ErrorCode::CoordinateNotFinite) continue;
         switch (orientation(data_.vertices[a].plan(), data_.vertices[b].plan(),
                             data_.vertices[c].plan())) {
-            case Orientation::CounterClockwise: break;
+            case Orientation::CounterClockwise:
+                break;
             case Orientation::Collinear:
                 triangle_fault(ErrorCode::TriangleFlat, t, "has no area in plan; leave it out");
                 break;
             case Orientation::Clockwise:
-                triangle_fault(ErrorCode::TriangleClockwise, t,
-                               "is clockwise seen from above; list its vertices the other way round");
+                triangle_fault(
+                    ErrorCode::TriangleClockwise, t,
+                    "is clockwise seen from above; list its vertices the other way round");
                 break;
         }
     }
@@ -132,7 +136,8 @@ void TinBuilder::link() {
     std::vector<Side> next(4 * count);
     const auto find = [&](VertexId from, VertexId to) {
         Side s = head[from.index()];
-        while (s.valid() && tin_.destination(s) != to) s = next[s.code];
+        while (s.valid() && tin_.destination(s) != to)
+            s = next[s.code];
         return s;
     };
     for (std::uint32_t t = 0; t < count; ++t) {
@@ -160,7 +165,8 @@ void TinBuilder::link() {
 void TinBuilder::collect_fans() {
     const std::size_t count = data_.vertices.size();
     tin_.vertices_.reserve(count + count / 2);
-    for (const Point3& p : data_.vertices) tin_.vertices_.push_back({p.x, p.y, p.z, {}});
+    for (const Point3& p : data_.vertices)
+        tin_.vertices_.push_back({p.x, p.y, p.z, {}});
     corner_seen_.assign(4 * tin_.triangles_.size(), 0);
     for (std::uint32_t t = 0; t < tin_.triangles_.size(); ++t)
         for (unsigned i = 0; i < 3; ++i)
@@ -217,7 +223,8 @@ void TinBuilder::mark_constraints() {
         if (from < data_.vertices.size() && to < data_.vertices.size()) {
             const TriangleId t = tin_.vertex({from}).triangle;
             unsigned corner = 0;
-            while (tin_.triangle(t).vertices[corner].value != from) ++corner;
+            while (tin_.triangle(t).vertices[corner].value != from)
+                ++corner;
             const Side start(t, corner);
             Side s = start;
             do {  // the triangle stored is the clockwise end of the fan
@@ -287,6 +294,8 @@ void TinBuilder::index_hints() {
     }
 }
 
-Result<Tin> build_tin(const MeshData& data) { return TinBuilder(data).build(); }
+Result<Tin> build_tin(const MeshData& data) {
+    return TinBuilder(data).build();
+}
 
 }  // namespace tinsmith::core

@@ -21,8 +21,10 @@ class Checker {
         // What follows indexes by what the triangles say, so that must be in range first.
         if (!check_ranges()) return std::move(found_);
         corners_.assign(tin_.vertex_count(), 0);
-        for (std::uint32_t t = 0; t < tin_.triangle_count(); ++t) check_triangle({t});
-        for (std::uint32_t v = 0; v < tin_.vertex_count(); ++v) check_fan({v});
+        for (std::uint32_t t = 0; t < tin_.triangle_count(); ++t)
+            check_triangle({t});
+        for (std::uint32_t v = 0; v < tin_.vertex_count(); ++v)
+            check_fan({v});
         return std::move(found_);
     }
 
@@ -50,7 +52,8 @@ class Checker {
                 const Side twin = triangle.twins[i];
                 if (triangle.vertices[i].index() >= tin_.vertex_count())
                     add("vertex", name(TriangleId{t}) + " names a vertex that is not there");
-                if (twin.valid() && (twin.index() > 2 || twin.triangle().index() >= tin_.triangle_count()))
+                if (twin.valid() &&
+                    (twin.index() > 2 || twin.triangle().index() >= tin_.triangle_count()))
                     add("adjacency", name(TriangleId{t}) + " names a twin that is not there");
             }
         }
@@ -76,7 +79,8 @@ class Checker {
                 add("adjacency", name(t) + " and " + name(twin.triangle()) + " do not agree");
             else if (tin_.is_constrained(side) != tin_.is_constrained(twin) ||
                      tin_.is_locked(side) != tin_.is_locked(twin))
-                add("marks", name(t) + " and " + name(twin.triangle()) + " mark their edge differently");
+                add("marks",
+                    name(t) + " and " + name(twin.triangle()) + " mark their edge differently");
         }
     }
 

@@ -20,8 +20,7 @@ double elevation_in(const Tin& tin, TriangleId t, Point2 p) {
     const double sum = wa + wb + wc;
     // From the lowest corner up: weights of differences lose nothing to a large common elevation.
     const double base = std::min({a.z, b.z, c.z});
-    const double z =
-        base + (wa * (a.z - base) + wb * (b.z - base) + wc * (c.z - base)) / sum;
+    const double z = base + (wa * (a.z - base) + wb * (b.z - base) + wc * (c.z - base)) / sum;
     return std::clamp(z, base, std::max({a.z, b.z, c.z}));
 }
 
@@ -32,7 +31,8 @@ double elevation_on(const Tin& tin, Side s, Point2 p) {
     const double dy = b->y - a->y;
     double from_a = (p.x - a->x) * dx + (p.y - a->y) * dy;
     double from_b = (b->x - p.x) * dx + (b->y - p.y) * dy;
-    const bool swap = from_b < from_a || (from_a == from_b && (b->x < a->x || (b->x == a->x && b->y < a->y)));
+    const bool swap =
+        from_b < from_a || (from_a == from_b && (b->x < a->x || (b->x == a->x && b->y < a->y)));
     if (swap) {
         std::swap(a, b);
         std::swap(from_a, from_b);

@@ -125,8 +125,8 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     const VertexId p = append(point, t);
     T.vertices[i1] = p;
     set_side_marks(T.marks, i1, 0);
-    const TriangleId N = append(
-        {{p, b, c}, {}, facet, side_marks(marks, i, 0) | side_marks(marks, i1, 1)});
+    const TriangleId N =
+        append({{p, b, c}, {}, facet, side_marks(marks, i, 0) | side_marks(marks, i1, 1)});
     join({N, 1}, outer_bc);
     join({t, i1}, {N, 2});
     if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
@@ -150,8 +150,8 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
 
     U.vertices[j1] = p;
     set_side_marks(U.marks, j1, 0);
-    const TriangleId M = append(
-        {{p, a, d}, {}, facet_u, side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1)});
+    const TriangleId M =
+        append({{p, a, d}, {}, facet_u, side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1)});
     join({M, 1}, outer_ad);
     join({u, j1}, {M, 2});
     join({t, i}, {M, 0});
@@ -265,7 +265,8 @@ void Surgery::undo(Tin& tin, const UndoRecord& record) {
     tin.boundary_.remove_newest(record.boundary_cells);
     tin.vertices_.resize(record.vertex_count);
     tin.triangles_.resize(record.triangle_count);
-    for (const auto& [id, old] : record.triangles) tin.triangles_[id.index()] = old;
+    for (const auto& [id, old] : record.triangles)
+        tin.triangles_[id.index()] = old;
     for (auto entry = record.vertices.rbegin(); entry != record.vertices.rend(); ++entry)
         tin.vertices_[entry->first.index()] = entry->second;
     tin.next_facet_ = record.next_facet;

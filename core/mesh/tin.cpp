@@ -19,7 +19,8 @@ TriangleId Tin::hint(Point2 p) const {
 MeshData Tin::to_data() const {
     MeshData data;
     data.vertices.reserve(vertices_.size());
-    for (const Vertex& v : vertices_) data.vertices.push_back(v.point());
+    for (const Vertex& v : vertices_)
+        data.vertices.push_back(v.point());
     data.triangles.reserve(triangles_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         const Triangle& triangle = triangles_[t];

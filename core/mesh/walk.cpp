@@ -20,9 +20,13 @@ Location locate_in(const Tin& tin, TriangleId t, Point2 p) {
     for (unsigned i = 0; i < 3; ++i) {
         if (tin.plan(vertices[i]) == p) return {Location::Kind::OnVertex, {}, vertices[i]};
         switch (orientation(tin.plan(vertices[i]), tin.plan(vertices[Side::next_of(i)]), p)) {
-            case Clockwise: return {};
-            case Collinear: on_side = i; break;
-            case CounterClockwise: break;
+            case Clockwise:
+                return {};
+            case Collinear:
+                on_side = i;
+                break;
+            case CounterClockwise:
+                break;
         }
     }
     if (on_side == 3) return {Location::Kind::InTriangle, {t, 0}, {}};
@@ -38,7 +42,8 @@ Location canonical(const Tin& tin, Location found) {
     if (!boundary_side_from(tin, found.vertex).valid()) return found;
     const Point2 p = tin.plan(found.vertex);
     for (const VertexId v : tin.boundary().near(p, p))
-        if (v.index() < tin.vertex_count() && v < found.vertex && tin.plan(v) == p) found.vertex = v;
+        if (v.index() < tin.vertex_count() && v < found.vertex && tin.plan(v) == p)
+            found.vertex = v;
     return found;
 }
 
@@ -81,8 +86,12 @@ StraightWalk walk_straight(const Tin& tin, VertexId v, Point2 p) {
                         met = apex;
                         break;
                     // entry runs left -> right; next is right -> apex, previous apex -> left.
-                    case CounterClockwise: exit = entry.next(); break;
-                    case Clockwise: exit = entry.previous(); break;
+                    case CounterClockwise:
+                        exit = entry.next();
+                        break;
+                    case Clockwise:
+                        exit = entry.previous();
+                        break;
                 }
                 continue;
             }

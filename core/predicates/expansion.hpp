@@ -38,7 +38,8 @@ inline Exact exact_product(double a, double b) {
     const double b_scaled = kSplitter * b;
     const double b_high = b_scaled - (b_scaled - b);
     const double b_low = b - b_high;
-    const double rest = a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
+    const double rest =
+        a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
     return {product, rest};
 }
 
@@ -68,7 +69,8 @@ class Expansion {
     /// The sum rounded: right to a few units in the last place, and zero only where it is zero.
     double estimate() const {
         double sum = 0.0;
-        for (std::size_t i = 0; i < size_; ++i) sum += parts_[i];
+        for (std::size_t i = 0; i < size_; ++i)
+            sum += parts_[i];
         return sum;
     }
 

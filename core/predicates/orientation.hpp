@@ -19,7 +19,6 @@ namespace detail {
 Orientation exact_orientation(Point2 a, Point2 b, Point2 c);
 double accurate_doubled_area(Point2 a, Point2 b, Point2 c);
 
-
 /// Forward error of the plain determinant relative to the sum of its products' magnitudes:
 /// (3 + 16 u) u with u = 2^-53 (Shewchuk 1997).
 inline constexpr double kOrientationError = 3.3306690738754716e-16;

@@ -34,10 +34,10 @@ enum class ErrorCode {
     LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that
     NotRepresentable = 403,  ///< no mesh of doubles holds the segment within the promised distance
     // 500: budgets
-    CrossingBudget = 501,   ///< more crossings than allowed
-    TriangleBudget = 502,   ///< more new triangles than allowed
-    Cancelled = 503,        ///< the caller's cancel callback said stop
-    StepBudget = 504,       ///< a loop used up its budget: a defect of ours, never the caller's
+    CrossingBudget = 501,  ///< more crossings than allowed
+    TriangleBudget = 502,  ///< more new triangles than allowed
+    Cancelled = 503,       ///< the caller's cancel callback said stop
+    StepBudget = 504,      ///< a loop used up its budget: a defect of ours, never the caller's
 };
 
 /// The word for a code on the wire, in logs and in tests: "RING_TOO_SHORT".
@@ -49,8 +49,8 @@ struct ErrorPlace {
     std::optional<std::size_t> triangle;  ///< triangle index of a mesh
     std::optional<std::size_t> shape;     ///< index into the request's shapes
     std::optional<std::size_t> path;      ///< index into the shape's paths
-    std::optional<std::size_t> point;     ///< index into the path's points (segment: its first point)
-    std::optional<Point2> position;       ///< plan position
+    std::optional<std::size_t> point;  ///< index into the path's points (segment: its first point)
+    std::optional<Point2> position;    ///< plan position
 };
 
 /// One fault: what is wrong, where, and in `detail` what the caller can do.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guarantees on the bundled terrain with each bundled polygon, by the independent oracle:
 // 100,000 random positions, all vertices of the old and of the new mesh.
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "api/formats/geojson.hpp"
 #include "api/formats/geotiff.hpp"
@@ -48,7 +48,8 @@ TEST_P(BundledTerrain, GuaranteesHold) {
     const auto request = api::read_geojson(read_data(GetParam().file + ".geojson"), {});
     ASSERT_TRUE(request);
     std::vector<core::Shape> shapes;
-    for (const auto& requested : request->shapes) shapes.push_back(requested.shape);
+    for (const auto& requested : request->shapes)
+        shapes.push_back(requested.shape);
     auto tin = core::build_tin(terrain());
     ASSERT_TRUE(tin);
     const test::SurfaceOracle before(terrain());
@@ -59,16 +60,18 @@ TEST_P(BundledTerrain, GuaranteesHold) {
     ASSERT_TRUE(report) << report.errors()[0].detail;
 
     const auto broken = test::check_guarantees({before, *tin, shapes, *report}, 100'000, 1);
-    for (std::size_t i = 0; i < broken.size() && i < 10; ++i) ADD_FAILURE() << broken[i];
+    for (std::size_t i = 0; i < broken.size() && i < 10; ++i)
+        ADD_FAILURE() << broken[i];
     const core::ShapeReport& shape = report->shapes.at(0);
     EXPECT_EQ(shape.outside.empty(), !GetParam().leaves);
     if (!GetParam().leaves) {
         EXPECT_EQ(shape.vertices_added, GetParam().input_vertices + shape.crossings);
     }
     std::cout << GetParam().file << ": " << shape.segments << " segments, " << shape.crossings
-              << " crossings, " << shape.vertices_added << " vertices added, " << shape.edges_swapped
-              << " edges swapped, vertical deviation at most " << shape.max_vertical_deviation
-              << " m, plan deviation " << shape.max_plan_deviation << " m\n";
+              << " crossings, " << shape.vertices_added << " vertices added, "
+              << shape.edges_swapped << " edges swapped, vertical deviation at most "
+              << shape.max_vertical_deviation << " m, plan deviation " << shape.max_plan_deviation
+              << " m\n";
 
     // The second time there is nothing left to do.
     const auto again = core::integrate(*tin, shapes, options);
@@ -77,21 +80,20 @@ TEST_P(BundledTerrain, GuaranteesHold) {
     EXPECT_EQ(again->shapes.at(0).triangles_added, 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Polygons, BundledTerrain,
-    testing::Values(Case{"lake", core::Improve::Strict, false, 90},
-                    Case{"lake", core::Improve::None, false, 90},
-                    Case{"road", core::Improve::Strict, false, 60},
-                    Case{"road", core::Improve::None, false, 60},
-                    Case{"parcel", core::Improve::Strict, false, 17},
-                    Case{"parcel", core::Improve::None, false, 17},
-                    Case{"contour_450", core::Improve::Strict, false, 450},
-                    Case{"contour_450", core::Improve::None, false, 450},
-                    Case{"contour_3500", core::Improve::Strict, false, 3501},
-                    Case{"contour_3500", core::Improve::None, false, 3501},
-                    Case{"leaving", core::Improve::Strict, true},
-                    Case{"leaving", core::Improve::None, true}),
-    case_name);
+INSTANTIATE_TEST_SUITE_P(Polygons, BundledTerrain,
+                         testing::Values(Case{"lake", core::Improve::Strict, false, 90},
+                                         Case{"lake", core::Improve::None, false, 90},
+                                         Case{"road", core::Improve::Strict, false, 60},
+                                         Case{"road", core::Improve::None, false, 60},
+                                         Case{"parcel", core::Improve::Strict, false, 17},
+                                         Case{"parcel", core::Improve::None, false, 17},
+                                         Case{"contour_450", core::Improve::Strict, false, 450},
+                                         Case{"contour_450", core::Improve::None, false, 450},
+                                         Case{"contour_3500", core::Improve::Strict, false, 3501},
+                                         Case{"contour_3500", core::Improve::None, false, 3501},
+                                         Case{"leaving", core::Improve::Strict, true},
+                                         Case{"leaving", core::Improve::None, true}),
+                         case_name);
 
 }  // namespace
 }  // namespace tinsmith

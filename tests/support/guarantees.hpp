@@ -25,14 +25,17 @@ struct Operation {
 /// G1: every law of the mesh, by `check_tin`.
 std::vector<std::string> check_valid(const core::Tin& tin);
 /// G2: vertical distance of the surfaces at all vertices of both and at `samples` random positions.
-std::vector<std::string> check_shape_kept(const Operation& op, std::size_t samples, std::uint64_t seed);
+std::vector<std::string> check_shape_kept(const Operation& op, std::size_t samples,
+                                          std::uint64_t seed);
 /// G3: constrained edges within rounding of each input segment cover it, where it is on the mesh.
 std::vector<std::string> check_integrated(const Operation& op);
 /// G8: new vertices are the distinct input vertices and crossings on the mesh, no more, no fewer.
-/// Positions that are one to within rounding may be one vertex or two.
-std::vector<std::string> check_economical(const Operation& op);
+/// Positions that are one to within rounding may be one vertex or two. `forced`: so many more are
+/// let pass at one place, for meshes whose triangles are some ulps wide.
+std::vector<std::string> check_economical(const Operation& op, std::size_t forced);
 /// All of them.
-std::vector<std::string> check_guarantees(const Operation& op, std::size_t samples, std::uint64_t seed);
+std::vector<std::string> check_guarantees(const Operation& op, std::size_t samples,
+                                          std::uint64_t seed);
 
 /// 4 ulp of the mesh's largest plan coordinate.
 double rounding_reach(const SurfaceOracle& mesh);

@@ -19,6 +19,8 @@ inline Quad area(core::Point2 a, core::Point2 b, core::Point2 c) {
            (Quad(a.y) - Quad(c.y)) * (Quad(b.x) - Quad(c.x));
 }
 
-inline int sign(Quad x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+inline int sign(Quad x) {
+    return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
 
 }  // namespace tinsmith::test

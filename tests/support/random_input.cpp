@@ -49,7 +49,8 @@ MeshData compact(const MeshData& full) {
 
 MeshData random_mesh(Random& random, MeshKind kind, int columns) {
     MeshData mesh;
-    const bool jitter = kind != MeshKind::Grid && kind != MeshKind::Holes && kind != MeshKind::Needles;
+    const bool jitter =
+        kind != MeshKind::Grid && kind != MeshKind::Holes && kind != MeshKind::Needles;
     const double scale = kind == MeshKind::FarAway ? 1e-3 : 1.0;
     const double offset = kind == MeshKind::FarAway ? 5e6 : 0.0;
     const double squeeze = kind == MeshKind::Needles ? 1e-9 : 1.0;
@@ -97,9 +98,12 @@ Shape random_shape(Random& random, ShapeKind kind, const MeshData& mesh) {
         const auto& t = mesh.triangles[random() % mesh.triangles.size()];
         const Point3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
         switch (pick(random, 4)) {
-            case 0: return {(a.x + b.x) / 2, (a.y + b.y) / 2};
-            case 1: return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
-            default: return a.plan();
+            case 0:
+                return {(a.x + b.x) / 2, (a.y + b.y) / 2};
+            case 1:
+                return {(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
+            default:
+                return a.plan();
         }
     };
     Path path;
@@ -119,11 +123,13 @@ Shape random_shape(Random& random, ShapeKind kind, const MeshData& mesh) {
         }
         case ShapeKind::Line:
         case ShapeKind::Tangled:
-            for (int i = 0; i < count; ++i) path.points.push_back(anywhere());
+            for (int i = 0; i < count; ++i)
+                path.points.push_back(anywhere());
             path.closed = kind == ShapeKind::Tangled;
             break;
         case ShapeKind::Lattice:
-            for (int i = 0; i < count; ++i) path.points.push_back(on_lattice());
+            for (int i = 0; i < count; ++i)
+                path.points.push_back(on_lattice());
             path.closed = pick(random, 2) == 0;
             break;
         case ShapeKind::Spike: {

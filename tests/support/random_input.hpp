@@ -23,12 +23,12 @@ enum class MeshKind {
 inline constexpr int kMeshKinds = 6;
 
 enum class ShapeKind {
-    Ring,      ///< star-shaped around a point
-    Line,      ///< open, random
-    Tangled,   ///< closed, self-intersecting
-    Lattice,   ///< points on posts, edges and cell centres only
-    Spike,     ///< runs back on itself
-    Tiny,      ///< much smaller than a triangle
+    Ring,     ///< star-shaped around a point
+    Line,     ///< open, random
+    Tangled,  ///< closed, self-intersecting
+    Lattice,  ///< points on posts, edges and cell centres only
+    Spike,    ///< runs back on itself
+    Tiny,     ///< much smaller than a triangle
 };
 inline constexpr int kShapeKinds = 6;
 

@@ -18,12 +18,15 @@ SurfaceOracle::SurfaceOracle(const core::MeshData& mesh) : mesh_(mesh) {
         max_ = {std::max(max_.x, v.x), std::max(max_.y, v.y)};
     }
     columns_ = std::clamp<std::size_t>(
-        static_cast<std::size_t>(std::sqrt(static_cast<double>(mesh_.triangles.size()) / 2.0)), 1, 2000);
+        static_cast<std::size_t>(std::sqrt(static_cast<double>(mesh_.triangles.size()) / 2.0)), 1,
+        2000);
     cells_.resize(columns_ * columns_);
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
         const auto [a, b, c] = mesh_.triangles[t];
-        const auto xs = std::minmax({mesh_.vertices[a].x, mesh_.vertices[b].x, mesh_.vertices[c].x});
-        const auto ys = std::minmax({mesh_.vertices[a].y, mesh_.vertices[b].y, mesh_.vertices[c].y});
+        const auto xs =
+            std::minmax({mesh_.vertices[a].x, mesh_.vertices[b].x, mesh_.vertices[c].x});
+        const auto ys =
+            std::minmax({mesh_.vertices[a].y, mesh_.vertices[b].y, mesh_.vertices[c].y});
         for (std::size_t r = row(ys.first); r <= row(ys.second); ++r)
             for (std::size_t k = column(xs.first); k <= column(xs.second); ++k)
                 cells_[r * columns_ + k].push_back(t);
@@ -48,7 +51,8 @@ std::optional<std::uint32_t> SurfaceOracle::triangle_at(Point2 p, double slack) 
         for (unsigned i = 0; i < 3; ++i) {
             const Point2 a = mesh_.vertices[mesh_.triangles[t][i]].plan();
             const Point2 b = mesh_.vertices[mesh_.triangles[t][(i + 1) % 3]].plan();
-            inset = std::min(inset, static_cast<double>(area(a, b, p)) / std::hypot(b.x - a.x, b.y - a.y));
+            inset = std::min(inset,
+                             static_cast<double>(area(a, b, p)) / std::hypot(b.x - a.x, b.y - a.y));
         }
         if (inset >= best_inset) {
             best = t;
