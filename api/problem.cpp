@@ -10,6 +10,9 @@ namespace tinsmith::api {
 
 namespace {
 
+/// A refused path may be of any length; its beginning tells enough.
+constexpr std::size_t kLongestInstance = 512;
+
 struct Row {
     ProblemType type;
     std::string_view word;
@@ -141,7 +144,7 @@ std::string write_problem(const Problem& problem, std::string_view instance,
         {"title", row.title},
         {"status", row.status},
         {"detail", problem.detail},
-        {"instance", instance},
+        {"instance", instance.substr(0, kLongestInstance)},
         {"request_id", request_id},
     };
     if (!problem.errors.empty()) {

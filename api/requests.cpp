@@ -27,8 +27,8 @@ class OptionFaults {
     }
     void add_unavailable(const NamedOption& option, std::string_view allowed) {
         add("NOT_AVAILABLE", option,
-            "= " + option.value + " is not available in this version: give " +
-                std::string(allowed) + ".");
+            "=" + option.value + " is not available in this version: give " + std::string(allowed) +
+                ".");
     }
     void add_contradiction(const NamedOption& option) {
         add("CONTRADICTION", option, "is given twice with different values: give it once.");

@@ -93,14 +93,32 @@ void append_number(std::string& out, Number value) {
     out.append(digits.data(), end);
 }
 
-template <typename Number>
-void append_triple(std::string& out, Number a, Number b, Number c) {
+/// "-0" would be read as the whole number nought, which has no sign.
+void append_coordinate(std::string& out, double value) {
+    if (value == 0.0 && std::signbit(value)) {
+        out += "-0.0";
+    } else {
+        append_number(out, value);
+    }
+}
+
+void append_vertex(std::string& out, const core::Point3& p) {
     out.push_back('[');
-    append_number(out, a);
+    append_coordinate(out, p.x);
     out.push_back(',');
-    append_number(out, b);
+    append_coordinate(out, p.y);
     out.push_back(',');
-    append_number(out, c);
+    append_coordinate(out, p.z);
+    out.push_back(']');
+}
+
+void append_triangle(std::string& out, const std::array<std::uint32_t, 3>& triangle) {
+    out.push_back('[');
+    append_number(out, triangle[0]);
+    out.push_back(',');
+    append_number(out, triangle[1]);
+    out.push_back(',');
+    append_number(out, triangle[2]);
     out.push_back(']');
 }
 
@@ -150,14 +168,12 @@ std::string write_mesh_json(const core::MeshData& mesh) {
     out += "{\"vertices\":[";
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (i > 0) out.push_back(',');
-        const core::Point3& p = mesh.vertices[i];
-        append_triple(out, p.x, p.y, p.z);
+        append_vertex(out, mesh.vertices[i]);
     }
     out += "],\"triangles\":[";
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (i > 0) out.push_back(',');
-        const auto& t = mesh.triangles[i];
-        append_triple(out, t[0], t[1], t[2]);
+        append_triangle(out, mesh.triangles[i]);
     }
     out += "]}\n";
     return out;

@@ -90,13 +90,18 @@ Head head_of(const httplib::Request& raw) {
     return head;
 }
 
+/// The library's request is not const, only handed out so.
+httplib::Request& mutable_request(const httplib::Request& raw) {
+    return const_cast<httplib::Request&>(raw);
+}
+
 /// Sends the body and then makes the library close the connection: a provider that says no after
 /// it has written is the one way to do so from a handler.
 void write_and_close(const httplib::Request& raw, httplib::Response& out, Response&& response) {
     auto body = std::make_shared<std::string>(std::move(response.body));
     // A HEAD request never gets as far as the provider. What follows on the connection is dropped
     // with it, so that the body of the answer cannot be taken for anything else.
-    if (raw.method == "HEAD") const_cast<httplib::Request&>(raw).method = "GET";
+    if (raw.method == "HEAD") mutable_request(raw).method = "GET";
     out.set_header("Connection", "close");
     out.set_content_provider(
         body->size(), response.content_type,
@@ -108,6 +113,10 @@ void write_and_close(const httplib::Request& raw, httplib::Response& out, Respon
 }
 
 void write_response(const httplib::Request& raw, httplib::Response& out, Response&& response) {
+    // Neither the library's slow compression nor its ranges are wanted (a server may ignore Range,
+    // RFC 9110 14.2).
+    mutable_request(raw).ranges.clear();
+    mutable_request(raw).headers.erase("Accept-Encoding");
     out.status = response.status;
     for (auto& [name, value] : response.headers)
         out.set_header(name, value);
@@ -215,6 +224,7 @@ class HttpServer::Impl {
             });
         server_.set_post_routing_handler([](const httplib::Request&, httplib::Response& out) {
             if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
+            out.headers.erase("Accept-Ranges");
             if (out.body.empty() && out.status == kNoContent) out.headers.erase("Content-Length");
         });
     }
@@ -239,14 +249,9 @@ class HttpServer::Impl {
             finish(raw, out, head.request, std::move(*refusal), start);
             return Handled::Handled;
         }
-        // The library's request is not const, only handed out so. Neither its slow compression
-        // nor its ranges are wanted (a server may ignore Range, RFC 9110 14.2), and its regular
-        // expressions shall meet no path of a client's.
-        auto& mine = const_cast<httplib::Request&>(raw);
-        mine.ranges.clear();
-        mine.headers.erase("Accept-Encoding");
         if (takes_body(raw.method)) {
-            mine.path = "/";
+            auto& mine = mutable_request(raw);
+            mine.path = "/";  // all that the library's regular expressions ever see
             mine.headers.erase("Content-Type");  // its parser of forms calls what nobody gave it
             pending() = std::move(head.request);
             return Handled::Unhandled;
@@ -307,7 +312,7 @@ class HttpServer::Impl {
     static void answer_for_library(const httplib::Request& raw, httplib::Response& out) {
         Request request;
         request.id = random_hex(8);
-        request.method = raw.method;
+        request.method = raw.method.empty() ? "-" : raw.method;
         request.path = raw.target.substr(0, std::min(raw.target.find('?'), kMaxPathBytes));
         request.remote_address = raw.remote_addr;
         const api::ProblemType type = api::problem_of_status(out.status);

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The binary as a command: outputs, complaints and exit codes.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/e2e/program.hpp"
+
+namespace tinsmith::e2e {
+namespace {
+
+using nlohmann::json;
+
+const std::string kData = std::string(TINSMITH_SOURCE_DIR) + "/tests/data/";
+
+class Command : public testing::Test {
+  protected:
+    /// Runs to the end and keeps what was printed.
+    int run(std::vector<std::string> arguments) {
+        Program program(std::move(arguments), scratch.file("output"));
+        const int code = program.wait(std::chrono::seconds(120)).value_or(-1);
+        output = program.output();
+        return code;
+    }
+
+    ScratchDirectory scratch;
+    std::string output;
+};
+
+TEST_F(Command, TellsVersionAndHelp) {
+    EXPECT_EQ(run({"--version"}), 0);
+    EXPECT_EQ(output.substr(0, 9), "tinsmith ");
+    EXPECT_EQ(run({"--help"}), 0);
+    EXPECT_NE(output.find("tinsmith serve --demo"), std::string::npos);
+    EXPECT_EQ(run({"serve", "--prot", "1"}), 2);
+    EXPECT_NE(output.find("--prot"), std::string::npos);
+}
+
+TEST_F(Command, IntegratesRealTerrain) {
+    const std::string glb = scratch.file("out.glb");
+    const std::string report = scratch.file("report.json");
+    ASSERT_EQ(run({"integrate", kData + "jacksboro.tif", kData + "lake.geojson", "-o", glb,
+                   "--report", report}),
+              0)
+        << output;
+    EXPECT_EQ(output, "") << "no bar where there is no terminal";
+    EXPECT_EQ(content_of(glb).substr(0, 4), "glTF");
+    const auto told = json::parse(content_of(report));
+    EXPECT_EQ(told["polygons"][0]["id"], "p1");
+    EXPECT_GT(told["totals"]["crossings"], 0);
+}
+
+TEST_F(Command, ComplainsInReadableLines) {
+    const std::string bad = scratch.file("bad.geojson");
+    write_content(bad, R"({"type": "Polygon", "coordinates": [[[1,2],[3,"x"]]]})");
+    const std::string glb = scratch.file("out.glb");
+    EXPECT_EQ(run({"integrate", kData + "jacksboro.tif", bad, "-o", glb}), 1);
+    EXPECT_NE(output.find("/coordinates/0"), std::string::npos) << output;
+    EXPECT_EQ(content_of(glb), "");
+    EXPECT_EQ(run({"integrate", "nowhere.tif", bad, "-o", glb}), 1);
+    EXPECT_NE(output.find("nowhere.tif: No such file"), std::string::npos) << output;
+}
+
+TEST_F(Command, ChecksMeshes) {
+    const std::string good = scratch.file("good.json");
+    write_content(good, R"({"mesh": {"vertices": [[0,0,0],[1,0,0],[0,1,0]],
+                                     "triangles": [[0,1,2]]}})");
+    EXPECT_EQ(run({"check", good}), 0) << output;
+    const std::string flat = scratch.file("flat.json");
+    write_content(flat, R"({"mesh": {"vertices": [[0,0,0],[1,0,0],[2,0,0]],
+                                     "triangles": [[0,1,2]]}})");
+    EXPECT_EQ(run({"check", flat}), 1);
+    EXPECT_NE(output.find("TRIANGLE_FLAT"), std::string::npos) << output;
+}
+
+}  // namespace
+}  // namespace tinsmith::e2e

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests on which two ends could disagree where they end, or which cost more than they bring.
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/e2e/program.hpp"
+#include "tests/e2e/wire.hpp"
+
+namespace tinsmith::e2e {
+namespace {
+
+class Hostile : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        server = new ServerUnderTest({"--max-body-bytes", "1000000"});
+        ASSERT_NE(server->port(), 0) << server->program().output();
+    }
+    static void TearDownTestSuite() {
+        EXPECT_EQ(server->stop(), "");
+        delete server;
+        server = nullptr;
+    }
+
+    /// Sends the bytes and expects one problem of that status and the end of the connection: what
+    /// else was in the bytes must not be taken for a request.
+    static void expect_refused(const std::string& bytes, int status) {
+        SCOPED_TRACE(bytes.substr(0, 200));
+        Connection connection(server->port());
+        connection.send(bytes);
+        const Answer answer = connection.read();
+        EXPECT_EQ(answer.status, status) << answer.body;
+        EXPECT_EQ(answer.header("content-type"), "application/problem+json");
+        EXPECT_NE(answer.header("x-request-id"), "");
+        EXPECT_TRUE(connection.is_closed());
+        EXPECT_EQ(ask(server->port(), "GET", "/healthz").status, 200);
+    }
+
+    static std::string post(const std::string& headers, const std::string& body = {}) {
+        return "POST /v1/sessions HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n" +
+               headers + "\r\n" + body;
+    }
+    static std::string get(const std::string& headers, const std::string& body = {}) {
+        return "GET /healthz HTTP/1.1\r\nHost: x\r\n" + headers + "\r\n" + body;
+    }
+
+    static inline const std::string smuggled = "GET /v1/sessions HTTP/1.1\r\nHost: x\r\n\r\n";
+    static inline ServerUnderTest* server = nullptr;
+};
+
+TEST_F(Hostile, ChunkedBodies) {
+    const std::string chunks = "5\r\nhello\r\n0\r\n\r\n";
+    expect_refused(post("Transfer-Encoding: chunked\r\n", chunks), 411);
+    expect_refused(post("Content-Length: 5\r\nTransfer-Encoding: chunked\r\n", chunks), 411);
+    expect_refused(post("transfer-encoding:\tchunked\r\n", chunks), 411);
+}
+
+TEST_F(Hostile, LengthsThatAreNone) {
+    expect_refused(post(""), 411);
+    expect_refused(post("Content-Length: abc\r\n", "x"), 400);
+    expect_refused(post("Content-Length: -1\r\n", "x"), 400);
+    expect_refused(post("Content-Length: 0x5\r\n", "hello"), 400);
+    expect_refused(post("Content-Length: 99999999999999999999\r\n", "x"), 400);
+    expect_refused(post("Content-Length: 1\r\nContent-Length: 5\r\n", "hello"), 400);
+}
+
+TEST_F(Hostile, BodiesWhereNoneBelong) {
+    expect_refused(get("Content-Length: " + std::to_string(smuggled.size()) + "\r\n", smuggled),
+                   400);
+    expect_refused("DELETE /v1/sessions/x HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello",
+                   400);
+    expect_refused("HEAD /healthz HTTP/1.1\r\nHost: x\r\nContent-Length: " +
+                       std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled,
+                   400);
+}
+
+TEST_F(Hostile, BodiesThatAreTooLarge) {
+    expect_refused(post("Content-Length: 1000001\r\n"), 413);
+    expect_refused(post("Content-Length: 1000001\r\nExpect: 100-continue\r\n"), 413);
+    expect_refused(post("Content-Length: 5000000\r\n", std::string(5'000'000, 'x')), 413);
+    expect_refused(post("Content-Length: 5\r\nContent-Encoding: gzip\r\n", "hello"), 415);
+}
+
+TEST_F(Hostile, BodiesThatEndEarly) {
+    Connection connection(server->port());
+    connection.send(post("Content-Length: 500\r\n", "{"));
+    connection.end_sending();
+    // Older versions of the library do not answer a client that has closed its side.
+    const int status = connection.read().status;
+    EXPECT_TRUE(status == 400 || status == 0) << status;
+    EXPECT_TRUE(connection.is_closed());
+    EXPECT_EQ(ask(server->port(), "GET", "/healthz").status, 200);
+}
+
+TEST_F(Hostile, Invitations) {
+    Connection connection(server->port());
+    connection.send(post("Content-Length: 2\r\nExpect: 100-continue\r\n"));
+    EXPECT_EQ(connection.read().status, 100);
+    connection.send("{}");
+    EXPECT_EQ(connection.read().status, 422);
+}
+
+TEST_F(Hostile, Headers) {
+    std::string many;
+    for (int i = 0; i < 200; ++i)
+        many += "X-" + std::to_string(i) + ": y\r\n";
+    expect_refused(get(many), 431);
+    expect_refused(get("Range: bytes=0-1,2-3\r\n"), 416);
+    expect_refused(get("REMOTE_ADDR: 10.0.0.1\r\n"), 400);
+    expect_refused(get("Host: y\r\n"), 400);
+    expect_refused(get("X-Long: " + std::string(100'000, 'a') + "\r\n"), 400);
+}
+
+TEST_F(Hostile, RequestLines) {
+    expect_refused("nonsense\r\n\r\n", 400);
+    expect_refused("GET /%zz HTTP/1.1\r\nHost: x\r\n\r\n", 400);
+    expect_refused("GET /a%0d%0ab HTTP/1.1\r\nHost: x\r\n\r\n", 400);
+    expect_refused("BREW / HTTP/1.1\r\nHost: x\r\n\r\n", 400);
+}
+
+TEST_F(Hostile, IdleConnectionsDoNotStopTheService) {
+    std::vector<std::unique_ptr<Connection>> idle;
+    for (int i = 0; i < 20; ++i) {
+        idle.push_back(std::make_unique<Connection>(server->port()));
+        idle.back()->send("GET /healthz HTTP/1.1\r\nHost:");
+    }
+    EXPECT_EQ(ask(server->port(), "GET", "/healthz").status, 200);
+}
+
+}  // namespace
+}  // namespace tinsmith::e2e

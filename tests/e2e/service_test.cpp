@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// The binary as a server: how it starts, serves, refuses and stops.
+#include <csignal>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/e2e/program.hpp"
+#include "tests/e2e/wire.hpp"
+
+namespace tinsmith::e2e {
+namespace {
+
+using nlohmann::json;
+
+const std::string kJson = "Content-Type: application/json";
+const std::string kSquare =
+    R"({"mesh": {"vertices": [[0,0,0],[10,0,1],[10,10,2],[0,10,3]],
+                 "triangles": [[0,1,2],[0,2,3]]}})";
+
+/// One server for all tests of a suite; at the end its log must be clean and its exit code 0.
+class Service : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        server = new ServerUnderTest({"--max-body-bytes", "12000000"});
+        ASSERT_NE(server->port(), 0) << server->program().output();
+    }
+    static void TearDownTestSuite() {
+        EXPECT_EQ(server->stop(), "");
+        delete server;
+        server = nullptr;
+    }
+
+    static int port() { return server->port(); }
+
+    static std::string make_session() {
+        const Answer made = ask(port(), "POST", "/v1/sessions", {kJson}, kSquare);
+        EXPECT_EQ(made.status, 201) << made.body;
+        return made.header("location");
+    }
+
+    /// A problem of that status, with everything that a problem has.
+    static void expect_problem(const Answer& answer, int status) {
+        EXPECT_EQ(answer.status, status) << answer.body.substr(0, 500);
+        EXPECT_EQ(answer.header("content-type"), "application/problem+json");
+        const auto body = json::parse(answer.body, nullptr, false);
+        ASSERT_TRUE(body.is_object()) << answer.body.substr(0, 500);
+        EXPECT_EQ(body["status"], status);
+        EXPECT_NE(body["detail"], "");
+        EXPECT_EQ(body["request_id"], answer.header("x-request-id"));
+    }
+
+    static void expect_healthy() { EXPECT_EQ(ask(port(), "GET", "/healthz").status, 200); }
+
+    static inline ServerUnderTest* server = nullptr;
+};
+
+TEST_F(Service, KeepsAConnectionForMoreThanFiveRequests) {
+    Connection connection(port());
+    for (int i = 0; i < 50; ++i) {
+        connection.send(request_text("GET", "/healthz"));
+        ASSERT_EQ(connection.read().status, 200) << "request " << i;
+    }
+}
+
+TEST_F(Service, CarriesTheRequestId) {
+    EXPECT_EQ(ask(port(), "GET", "/healthz", {"X-Request-Id: my-id.7"}).header("x-request-id"),
+              "my-id.7");
+    const std::string made = ask(port(), "GET", "/healthz").header("x-request-id");
+    EXPECT_EQ(made.size(), 16U);
+    EXPECT_EQ(ask(port(), "GET", "/x", {"X-Request-Id: a b"}).header("x-request-id").size(), 16U);
+}
+
+TEST_F(Service, AnswersHeadWithoutABody) {
+    Connection connection(port());
+    connection.send(request_text("HEAD", "/healthz"));
+    EXPECT_EQ(connection.read(true).header("content-length"), "16");
+    connection.send(request_text("GET", "/healthz"));
+    EXPECT_EQ(connection.read().status, 200);
+}
+
+TEST_F(Service, GivesNoLengthToNoContent) {
+    const std::string session = make_session();
+    Connection connection(port());
+    connection.send(request_text("DELETE", session));
+    const Answer gone = connection.read();
+    EXPECT_EQ(gone.status, 204);
+    EXPECT_EQ(gone.header("content-length"), "");
+    connection.send(request_text("GET", session));
+    expect_problem(connection.read(), 404);
+}
+
+TEST_F(Service, NeverCompressesAndNeverCuts) {
+    const Answer plain = ask(port(), "GET", "/v1/limits");
+    EXPECT_EQ(ask(port(), "GET", "/v1/limits", {"Accept-Encoding: gzip, br"}).body, plain.body);
+    const Answer ranged = ask(port(), "GET", "/v1/limits", {"Range: bytes=0-3"});
+    EXPECT_EQ(ranged.status, 200);
+    EXPECT_EQ(ranged.body, plain.body);
+}
+
+TEST_F(Service, TellsCurlUsersWhatToAdd) {
+    const std::string form = "Content-Type: application/x-www-form-urlencoded";
+    for (const std::size_t size : {std::size_t{10}, std::size_t{1} << 20}) {
+        const Answer answer = ask(port(), "POST", "/v1/sessions", {form}, std::string(size, 'a'));
+        expect_problem(answer, 415);
+        EXPECT_NE(answer.body.find("-H 'Content-Type: application/json'"), std::string::npos);
+    }
+    expect_problem(ask(port(), "POST", "/v1/sessions",
+                       {"Content-Type: multipart/form-data; boundary=x"}, "--x--"),
+                   415);
+}
+
+TEST_F(Service, RefusesBadPolygonsAndChangesNothing) {
+    const std::string session = make_session();
+    const std::string before = ask(port(), "GET", session + "/mesh.json").body;
+    struct Case {
+        std::string body;
+        int status;
+        std::string place;  ///< the pointer that names it; empty: the whole body
+    };
+    const std::string open = R"({"type": "Polygon", "coordinates": [[)";
+    const std::vector<Case> cases{
+        {open + "[NaN,2],[5,2],[5,5],[2,2]]]}", 400, ""},
+        {open + "[1e999,2],[5,2],[5,5],[1e999,2]]]}", 422, "/coordinates/0/0"},
+        {open + "[2,\"2\"],[5,2],[5,5],[2,2]]]}", 422, "/coordinates/0/0"},
+        {open + "[2,2],[5,2]]]}", 422, "/coordinates/0"},
+        {R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,2]]],
+             "tinsmith": {"colour": "red"}})",
+         422, "/tinsmith/colour"},
+        {std::string(10'000'000, '['), 400, ""},
+    };
+    for (const Case& c : cases) {
+        const Answer answer = ask(port(), "POST", session + "/polygons", {kJson}, c.body);
+        SCOPED_TRACE(c.body.substr(0, 100));
+        expect_problem(answer, c.status);
+        if (!c.place.empty()) {
+            EXPECT_NE(answer.body.find("\"pointer\":\"" + c.place), std::string::npos)
+                << answer.body;
+        }
+        expect_healthy();
+    }
+    EXPECT_EQ(json::parse(ask(port(), "GET", session).body)["version"], 1);
+    EXPECT_EQ(ask(port(), "GET", session + "/mesh.json").body, before);
+}
+
+TEST_F(Service, RefusesBadTerrains) {
+    const Answer answer = ask(port(), "POST", "/v1/sessions", {kJson},
+                              R"({"mesh": {"vertices": [[0,0,0]], "triangles": [[0,0,0]]},
+                                  "colour": 1, "name": 5})");
+    expect_problem(answer, 422);
+    EXPECT_NE(answer.body.find("/colour"), std::string::npos);
+    EXPECT_NE(answer.body.find("/name"), std::string::npos);
+    expect_problem(ask(port(), "POST", "/v1/sessions", {kJson}, "not json"), 400);
+    expect_problem(ask(port(), "POST", "/v1/sessions", {"Content-Type: image/tiff"}, "II*"), 400);
+    expect_problem(ask(port(), "POST", "/v1/sessions", {"Content-Type: text/csv"}, "1,2,3"), 415);
+    expect_healthy();
+}
+
+TEST_F(Service, RefusesLongPaths) {
+    for (const std::size_t length : {std::size_t{600}, std::size_t{5000}, std::size_t{100'000}}) {
+        Connection connection(port());
+        connection.send(request_text("GET", "/" + std::string(length, 'a')));
+        expect_problem(connection.read(), 414);
+        EXPECT_TRUE(connection.is_closed());
+        expect_healthy();
+    }
+}
+
+TEST_F(Service, RefusesUnknownSessions) {
+    for (const char* path : {"/v1/sessions/none", "/v1/sessions/none/mesh.glb",
+                             "/v1/sessions/..%2f..%2fetc%2fpasswd"}) {
+        expect_problem(ask(port(), "GET", path), 404);
+    }
+    expect_problem(ask(port(), "POST", "/v1/sessions/none/polygons", {kJson}, "{}"), 404);
+}
+
+TEST_F(Service, EditsAMeshFromEndToEnd) {
+    const std::string session = make_session();
+    const Answer done = ask(port(), "POST", session + "/polygons", {kJson}, R"({"type": "Polygon",
+        "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]})");
+    ASSERT_EQ(done.status, 200) << done.body;
+    EXPECT_EQ(json::parse(done.body)["version"], 2);
+    const Answer mesh = ask(port(), "GET", session + "/mesh", {"Accept: application/json"});
+    EXPECT_EQ(json::parse(mesh.body)["vertices"].size(), 8U);
+    const Answer glb = ask(port(), "GET", session + "/mesh");
+    EXPECT_EQ(glb.body.substr(0, 4), "glTF");
+    EXPECT_EQ(glb.header("content-type"), "model/gltf-binary");
+    EXPECT_NE(glb.header("tinsmith-max-error"), "");
+}
+
+TEST(ServiceStart, RefusesATakenPort) {
+    ServerUnderTest first;
+    ASSERT_NE(first.port(), 0) << first.program().output();
+    const ScratchDirectory scratch;
+    Program second({"serve", "--port", std::to_string(first.port())}, scratch.file("log"));
+    EXPECT_EQ(second.wait(), 1);
+    EXPECT_NE(second.output().find("cannot listen on 127.0.0.1:"), std::string::npos)
+        << second.output();
+    EXPECT_EQ(ask(first.port(), "GET", "/healthz").status, 200);
+    EXPECT_EQ(first.stop(), "");
+}
+
+TEST(ServiceStart, LoadsTheDemoTerrain) {
+    ServerUnderTest server({"--demo"});
+    ASSERT_NE(server.port(), 0) << server.program().output();
+    const Answer demo = ask(server.port(), "GET", "/v1/sessions/demo");
+    ASSERT_EQ(demo.status, 200) << demo.body;
+    const auto session = json::parse(demo.body);
+    EXPECT_EQ(session["name"], "Jacksboro fault");
+    EXPECT_GT(session["triangles"], 100'000);
+    const Answer done =
+        ask(server.port(), "POST", "/v1/sessions/demo/polygons", {kJson},
+            content_of(std::string(TINSMITH_SOURCE_DIR) + "/tests/data/lake.geojson"));
+    EXPECT_EQ(done.status, 200) << done.body;
+    EXPECT_EQ(server.stop(), "");
+}
+
+TEST(ServiceStart, WarnsBeyondThisMachine) {
+    ServerUnderTest server({"--host", "0.0.0.0"});
+    ASSERT_NE(server.port(), 0) << server.program().output();
+    EXPECT_NE(server.stop().find("WITHOUT KEYS"), std::string::npos);
+}
+
+TEST(ServiceStop, ObeysInterruptsToo) {
+    ServerUnderTest server;
+    ASSERT_NE(server.port(), 0);
+    const Connection idle(server.port());
+    server.program().send_signal(SIGINT);
+    EXPECT_EQ(server.program().wait(), 0) << server.program().output();
+}
+
+}  // namespace
+}  // namespace tinsmith::e2e

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/config.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace tinsmith::server {
+namespace {
+
+Command parse(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "tinsmith");
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    Command command = parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+    testing::internal::GetCapturedStdout();
+    testing::internal::GetCapturedStderr();
+    return command;
+}
+
+int exit_code(std::vector<const char*> arguments) {
+    const Command command = parse(std::move(arguments));
+    return std::holds_alternative<int>(command) ? std::get<int>(command) : -1;
+}
+
+ServeConfig serve(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "serve");
+    const Command command = parse(std::move(arguments));
+    const auto* config = std::get_if<ServeConfig>(&command);
+    EXPECT_NE(config, nullptr);
+    return config != nullptr ? *config : ServeConfig{};
+}
+
+/// A file with that content, gone at the end of the test.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(const std::string& content)
+        : path_(testing::TempDir() + "tinsmith_config_test.toml") {
+        std::ofstream(path_) << content;
+    }
+    ~TemporaryFile() { std::filesystem::remove(path_); }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    const char* path() const { return path_.c_str(); }
+
+  private:
+    const std::string path_;
+};
+
+TEST(CommandLine, AnswersHelpAndVersionByItself) {
+    EXPECT_EQ(exit_code({"--help"}), kExitOk);
+    EXPECT_EQ(exit_code({"--version"}), kExitOk);
+    EXPECT_EQ(exit_code({"serve", "--help"}), kExitOk);
+}
+
+TEST(CommandLine, RefusesWrongUsage) {
+    EXPECT_EQ(exit_code({}), kExitUsage);
+    EXPECT_EQ(exit_code({"dance"}), kExitUsage);
+    EXPECT_EQ(exit_code({"serve", "--prot", "1"}), kExitUsage);
+    EXPECT_EQ(exit_code({"serve", "--port", "65536"}), kExitUsage);
+    EXPECT_EQ(exit_code({"serve", "--threads", "0"}), kExitUsage);
+    EXPECT_EQ(exit_code({"integrate", "a.tif"}), kExitUsage);
+}
+
+TEST(CommandLine, ReadsServe) {
+    EXPECT_EQ(serve({}).http.port, 8080);
+    EXPECT_EQ(serve({}).http.host, "127.0.0.1");
+    const ServeConfig config = serve({"--port", "0", "--port-file", "p", "--demo",
+                                      "--max-body-bytes", "2MB", "--log-level", "error"});
+    EXPECT_EQ(config.http.port, 0);
+    EXPECT_EQ(config.port_file, "p");
+    EXPECT_TRUE(config.demo);
+    EXPECT_EQ(config.http.limits.max_body_bytes, 2U << 20);
+    EXPECT_EQ(config.log_level, LogLevel::Error);
+}
+
+TEST(CommandLine, ReadsIntegrate) {
+    const Command command = parse({"integrate", "t.tif", "p.json", "-o", "out.glb", "--improve",
+                                   "none", "--dry-run", "true", "--tolerance", "0.1"});
+    const auto& config = std::get<IntegrateConfig>(command);
+    EXPECT_EQ(config.terrain, "t.tif");
+    EXPECT_EQ(config.polygons, "p.json");
+    EXPECT_EQ(config.output, "out.glb");
+    ASSERT_EQ(config.polygon_options.size(), 2U);
+    EXPECT_EQ(config.polygon_options[0].name, "improve");
+    EXPECT_EQ(config.polygon_options[0].value, "none");
+    EXPECT_EQ(config.polygon_options[1].name, "dry_run");
+    ASSERT_EQ(config.mesh_options.size(), 1U);
+    EXPECT_EQ(config.mesh_options[0].value, "0.1");
+}
+
+TEST(CommandLine, TakesTheEnvironmentToo) {
+    ::setenv("TINSMITH_PORT", "9001", 1);
+    ::setenv("TINSMITH_MAX_SESSIONS", "3", 1);
+    const ServeConfig config = serve({"--max-sessions", "4"});
+    ::unsetenv("TINSMITH_PORT");
+    ::unsetenv("TINSMITH_MAX_SESSIONS");
+    EXPECT_EQ(config.http.port, 9001);
+    EXPECT_EQ(config.http.limits.max_sessions, 4U);
+}
+
+TEST(CommandLine, TakesAFileToo) {
+    const TemporaryFile file("[serve]\nport = 9002\ndemo = true\nmax-sessions = 5\n");
+    const ServeConfig config = serve({"--config", file.path(), "--max-sessions", "6"});
+    EXPECT_EQ(config.http.port, 9002);
+    EXPECT_TRUE(config.demo);
+    EXPECT_EQ(config.http.limits.max_sessions, 6U);
+}
+
+TEST(CommandLine, RefusesAFileWithUnknownLines) {
+    const TemporaryFile file("[serve]\nprot = 9002\n");
+    EXPECT_EQ(exit_code({"serve", "--config", file.path()}), kExitUsage);
+    EXPECT_EQ(exit_code({"serve", "--config", "/nowhere/at/all.toml"}), kExitUsage);
+}
+
+}  // namespace
+}  // namespace tinsmith::server
