@@ -124,7 +124,7 @@ void TinBuilder::check_triangles() {
 /// Finds each side's twin through a chain of sides for each first vertex.
 void TinBuilder::link() {
     const std::size_t count = data_.triangles.size();
-    tin_.triangles_.reserve(count + count / 2);
+    tin_.reserve_growth(data_.vertices.size(), count);
     for (std::size_t t = 0; t < count; ++t) {
         const auto [a, b, c] = data_.triangles[t];
         tin_.triangles_.push_back(
@@ -164,7 +164,6 @@ void TinBuilder::link() {
 
 void TinBuilder::collect_fans() {
     const std::size_t count = data_.vertices.size();
-    tin_.vertices_.reserve(count + count / 2);
     for (const Point3& p : data_.vertices)
         tin_.vertices_.push_back({p.x, p.y, p.z, {}});
     corner_seen_.assign(4 * tin_.triangles_.size(), 0);

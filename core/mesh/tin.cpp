@@ -5,6 +5,27 @@
 
 namespace tinsmith::core {
 
+Tin::Tin(const Tin& other)
+    : next_facet_(other.next_facet_),
+      bounds_(other.bounds_),
+      boundary_(other.boundary_),
+      hints_(other.hints_),
+      hint_columns_(other.hint_columns_) {
+    reserve_growth(other.vertices_.size(), other.triangles_.size());
+    vertices_.assign(other.vertices_.begin(), other.vertices_.end());
+    triangles_.assign(other.triangles_.begin(), other.triangles_.end());
+}
+
+Tin& Tin::operator=(const Tin& other) {
+    if (this != &other) *this = Tin(other);
+    return *this;
+}
+
+void Tin::reserve_growth(std::size_t vertices, std::size_t triangles) {
+    vertices_.reserve(vertices + vertices / 2);
+    triangles_.reserve(triangles + triangles / 2);
+}
+
 TriangleId Tin::hint(Point2 p) const {
     const auto cell = [this](double offset, double extent) {
         const double columns = static_cast<double>(hint_columns_);

@@ -108,7 +108,17 @@ class Tin {
     /// Bytes that the mesh holds, growth room that was never touched left out.
     std::size_t memory_bytes() const;
 
+    /// A copy has room to grow like the original, so that its first edit need not move it.
+    Tin(const Tin& other);
+    Tin& operator=(const Tin& other);
+    Tin(Tin&&) = default;
+    Tin& operator=(Tin&&) = default;
+
   private:
+    Tin() = default;
+    /// Takes address space for half as many slots again; memory only where they are used.
+    void reserve_growth(std::size_t vertices, std::size_t triangles);
+
     friend class TinBuilder;
     friend class Surgery;
 
