@@ -44,6 +44,7 @@ constexpr std::array kTable{
     Row{VersionMismatch, "version-mismatch", "The session has another version", 412},
     Row{EditRefused, "edit-refused", "The mesh cannot be edited this way", 422},
     Row{BudgetExceeded, "budget-exceeded", "The work would pass a limit", 422},
+    Row{IdTaken, "id-taken", "The id is taken", 409},
     Row{TooManySessions, "too-many-sessions", "No room for another session", 429},
     Row{OutOfMemory, "out-of-memory", "Not enough memory", 507},
     Row{Stopped, "stopped", "The work was stopped", 503},

@@ -33,6 +33,7 @@ enum class ProblemType {
     VersionMismatch,  ///< If-Match
     EditRefused,      ///< the core refused: the place and reason are in errors[]
     BudgetExceeded,   ///< the work would pass a limit; errors[] names it
+    IdTaken,          ///< the id of choice exists
     TooManySessions,
     OutOfMemory,
     Stopped,  ///< the work was cancelled: time limit or shutdown

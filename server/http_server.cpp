@@ -161,8 +161,7 @@ class HttpServer::Impl {
     }
 
     bool serve() {
-        if (stopped_.exchange(false)) return true;
-        const bool fine = server_.listen_after_bind();
+        const bool fine = stopped_ || server_.listen_after_bind();
         finished_ = true;
         return fine;
     }

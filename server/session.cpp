@@ -2,7 +2,6 @@
 #include "server/session.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <new>
 #include <utility>
 
@@ -49,34 +48,53 @@ bool is_expected(const PolygonEdit& edit, std::uint64_t version) {
 }  // namespace
 
 Session::Session(SessionFacts facts, core::Tin tin)
-    : facts_(std::move(facts)), tin_(std::move(tin)), memory_bytes_(tin_.memory_bytes()) {}
+    : facts_(std::move(facts)), tin_(std::move(tin)) {
+    view_.id = facts_.id;
+    view_.name = facts_.name;
+    view_.crs = facts_.crs;
+    view_.unit = facts_.unit;
+    refresh_view();
+}
 
 std::string Session::etag(std::uint64_t version) const {
     return '"' + facts_.birth + '-' + std::to_string(version) + '"';
 }
 
 api::SessionView Session::view() const {
-    const std::shared_lock lock(mutex_);
-    return {facts_.id,
-            facts_.name,
-            facts_.crs,
-            facts_.unit,
-            version_,
-            tin_.vertex_count(),
-            tin_.triangle_count(),
-            tin_.bounds(),
-            polygons_.size(),
-            tin_.memory_bytes()};
+    const std::lock_guard lock(view_mutex_);
+    return view_;
 }
 
 MeshCopy Session::copy_mesh() const {
-    const std::shared_lock lock(mutex_);
+    const auto lock = lock_to_read();
     return {tin_.to_data(), version_};
+}
+
+// A shared mutex alone lets a stream of readers keep a writer out for ever.
+std::shared_lock<std::shared_mutex> Session::lock_to_read() const {
+    const std::lock_guard turn(turn_);
+    return std::shared_lock(mutex_);
+}
+
+std::unique_lock<std::shared_mutex> Session::lock_to_write() const {
+    const std::lock_guard turn(turn_);
+    return std::unique_lock(mutex_);
+}
+
+/// Requires: the writer's lock, or nobody else about.
+void Session::refresh_view() noexcept {
+    const std::lock_guard lock(view_mutex_);
+    view_.version = version_;
+    view_.vertices = tin_.vertex_count();
+    view_.triangles = tin_.triangle_count();
+    view_.bounds = tin_.bounds();
+    view_.polygons = polygons_.size();
+    view_.memory_bytes = tin_.memory_bytes() + text_bytes_;
 }
 
 PolygonOutcome Session::integrate(PolygonEdit edit) {
     if (edit.dry_run) return integrate_dry(edit);
-    const std::unique_lock lock(mutex_);
+    const auto lock = lock_to_write();
     if (!is_expected(edit, version_)) return VersionMismatch{version_};
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
     make_room(polygons_, edit.shapes.size());
@@ -89,13 +107,13 @@ PolygonOutcome Session::integrate(PolygonEdit edit) {
     result.report = kept_report;
     result.version = ++version_;
     keep_polygons(edit, result);
-    memory_bytes_.store(tin_.memory_bytes(), std::memory_order_relaxed);
+    refresh_view();
     if (edit.want_mesh) result.mesh = copy_if_possible(tin_);
     return result;
 }
 
 PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {
-    std::shared_lock lock(mutex_);
+    auto lock = lock_to_read();
     if (!is_expected(edit, version_)) return VersionMismatch{version_};
     core::Tin trial = tin_;
     PolygonResult result;
@@ -111,6 +129,7 @@ PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {
 
 void Session::keep_polygons(PolygonEdit& edit, const PolygonResult& result) noexcept {
     for (std::size_t i = 0; i < edit.shapes.size(); ++i) {
+        text_bytes_ += edit.properties[i].size() + edit.client_ids[i].size();
         // The ids are short enough to be copied without taking memory.
         polygons_.push_back({result.polygon_ids[i], std::move(edit.client_ids[i]),
                              std::move(edit.properties[i]), result.report, i});

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
@@ -78,11 +78,9 @@ class Session {
     const SessionFacts& facts() const { return facts_; }
     std::string etag(std::uint64_t version) const;
 
+    /// As of the last finished edit: does not wait for one under way.
     api::SessionView view() const;
     MeshCopy copy_mesh() const;
-    /// As of the last finished edit; waits for nobody.
-    std::size_t memory_bytes() const { return memory_bytes_.load(std::memory_order_relaxed); }
-
     /// Integrates all shapes or none. A dry run works on a copy and holds no writer's lock.
     /// Requires: shapes, client_ids and properties of one length.
     PolygonOutcome integrate(PolygonEdit edit);
@@ -90,14 +88,22 @@ class Session {
   private:
     PolygonOutcome integrate_dry(const PolygonEdit& edit) const;
     void keep_polygons(PolygonEdit& edit, const PolygonResult& result) noexcept;
+    void refresh_view() noexcept;
+
+    std::shared_lock<std::shared_mutex> lock_to_read() const;
+    std::unique_lock<std::shared_mutex> lock_to_write() const;
 
     const SessionFacts facts_;
-    mutable std::shared_mutex mutex_;  ///< guards everything below
+    mutable std::mutex turn_;  ///< held while waiting for the next, so that readers queue too
+    mutable std::shared_mutex mutex_;  ///< guards mesh, version and polygons
     core::Tin tin_;
     std::uint64_t version_ = 1;
     std::uint64_t next_polygon_ = 1;
+    std::size_t text_bytes_ = 0;  ///< of the polygons' properties and names
     std::vector<Polygon> polygons_;
-    std::atomic<std::size_t> memory_bytes_;  ///< apart from the lock, for the store's sum
+
+    mutable std::mutex view_mutex_;  ///< guards the view; taken last and never held for long
+    api::SessionView view_;
 };
 
 }  // namespace tinsmith::server

@@ -17,10 +17,9 @@ SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
     const std::unique_lock lock(mutex_);
     if (sessions_.contains(key)) return StoreRefusal::IdIsTaken;
     if (sessions_.size() >= limits_.max_sessions) return StoreRefusal::TooMany;
-    std::size_t held = session->memory_bytes();
-    for (const auto& [other_id, other] : sessions_)
-        held += other->memory_bytes();
-    if (held > limits_.max_memory_bytes) return StoreRefusal::NoMemory;
+    if (sum_of_memory() + session->view().memory_bytes > limits_.max_memory_bytes) {
+        return StoreRefusal::NoMemory;
+    }
     sessions_.emplace(key, session);
     return session;
 }
@@ -53,6 +52,18 @@ bool SessionStore::remove(const std::string& id) {
 std::size_t SessionStore::size() const {
     const std::shared_lock lock(mutex_);
     return sessions_.size();
+}
+
+std::size_t SessionStore::memory_bytes() const {
+    const std::shared_lock lock(mutex_);
+    return sum_of_memory();
+}
+
+std::size_t SessionStore::sum_of_memory() const {
+    std::size_t sum = 0;
+    for (const auto& [id, session] : sessions_)
+        sum += session->view().memory_bytes;
+    return sum;
 }
 
 }  // namespace tinsmith::server

@@ -43,7 +43,12 @@ class SessionStore {
 
     std::size_t size() const;
 
+    /// Of all sessions together. Waits for no edit.
+    std::size_t memory_bytes() const;
+
   private:
+    std::size_t sum_of_memory() const;
+
     const Limits limits_;
     mutable std::shared_mutex mutex_;  ///< guards the map, not the sessions
     std::map<std::string, std::shared_ptr<Session>> sessions_;

@@ -17,6 +17,7 @@ Response get_limits(Services&, const Request&, const PathArguments&);
 // session_routes.cpp
 Response list_sessions(Services&, const Request&, const PathArguments&);
 Response create_session(Services&, const Request&, const PathArguments&);
+Response put_session(Services&, const Request&, const PathArguments&);
 Response get_session(Services&, const Request&, const PathArguments&);
 Response delete_session(Services&, const Request&, const PathArguments&);
 

@@ -31,15 +31,16 @@ Response send_report(const Session& session, const PolygonResult& result, bool d
 
 /// The edit is made even where its mesh cannot be sent, and the answer has to say so.
 Response send_mesh_after(const Request& request, const Session& session,
-                         const PolygonResult& result) {
+                         const PolygonResult& result, bool dry_run) {
+    const std::string made =
+        " The edit was made: the session has version " + std::to_string(result.version) + ".";
     if (!result.mesh) {
         return refuse(request, api::ProblemType::OutOfMemory,
-                      "The edit was made (version " + std::to_string(result.version) +
-                          "), but there is no memory to send the mesh: get it later.");
+                      "There is no memory to send the mesh now: get it later." + made);
     }
     api::GltfOptions options;
     options.unit_to_metre = api::metres_per(session.facts().unit);
-    return glb_response(request, *result.mesh, options);
+    return glb_response(request, *result.mesh, options, dry_run ? std::string() : made);
 }
 
 }  // namespace
@@ -50,6 +51,7 @@ Response integrate_polygons(Services& services, const Request& request,
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request)) return *refusal;
+    if (auto refusal = refusal_of_memory(services, request)) return *refusal;
     const auto type = require_media_type(request, kAnswerTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     const auto expected = require_if_match(request, session);
@@ -74,8 +76,8 @@ Response integrate_polygons(Services& services, const Request& request,
         return refuse(request, api::problem_of_errors(*errors, faults_of(*errors, work->shapes)));
     }
     const auto& result = std::get<PolygonResult>(outcome);
-    Response response =
-        as_glb ? send_mesh_after(request, session, result) : send_report(session, result, dry_run);
+    Response response = as_glb ? send_mesh_after(request, session, result, dry_run)
+                               : send_report(session, result, dry_run);
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
 }
 

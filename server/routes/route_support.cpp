@@ -122,10 +122,10 @@ Response refuse_options(const Request& request, api::FaultKind kind, api::Faults
 }
 
 Response glb_response(const Request& request, const core::MeshData& mesh,
-                      const api::GltfOptions& options) {
+                      const api::GltfOptions& options, const std::string& note) {
     auto written = api::write_glb(mesh, options);
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
-        return refuse(request, problem_of(error->fault), error->detail);
+        return refuse(request, problem_of(error->fault), error->detail + note);
     }
     auto& glb = std::get<api::GltfResult>(written);
     Response response = ok(kGlb, std::move(glb.bytes));
@@ -136,6 +136,14 @@ Response glb_response(const Request& request, const core::MeshData& mesh,
         .with("Tinsmith-Origin",
               text_of(glb.origin[0]) + " " + text_of(glb.origin[1]) + " " + text_of(glb.origin[2]));
     return response;
+}
+
+std::optional<Response> refusal_of_memory(const Services& services, const Request& request) {
+    const std::size_t most = services.limits.max_memory_bytes;
+    if (services.sessions.memory_bytes() <= most) return std::nullopt;
+    return refuse(request, api::ProblemType::OutOfMemory,
+                  "All meshes together have passed the limit max_memory_bytes of " +
+                      std::to_string(most) + ". DELETE sessions that are not needed.");
 }
 
 }  // namespace tinsmith::server

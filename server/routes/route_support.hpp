@@ -46,8 +46,12 @@ std::vector<api::NamedOption> options_of_query(const Request& request);
 /// The answer for options that were refused: 400 where only the query is at fault, 422 otherwise.
 Response refuse_options(const Request& request, api::FaultKind kind, api::Faults faults);
 
-/// The mesh as GLB, with headers that say what rounding did, or why it cannot be written.
+/// The mesh as GLB, with headers that say what rounding did, or why it cannot be written. `note`
+/// is told with a refusal: what has been done all the same.
 Response glb_response(const Request& request, const core::MeshData& mesh,
-                      const api::GltfOptions& options);
+                      const api::GltfOptions& options, const std::string& note = {});
+
+/// 507, or nothing where all sessions together are within their limit of memory.
+std::optional<Response> refusal_of_memory(const Services& services, const Request& request);
 
 }  // namespace tinsmith::server

@@ -27,6 +27,7 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions", {}, to(list_sessions)},
         {"POST", "/v1/sessions", {}, to(create_session)},
         {"GET", "/v1/sessions/{id}", {}, to(get_session)},
+        {"PUT", "/v1/sessions/{id}", {}, to(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/polygons", polygons, to(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
+#include "server/random_id.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
@@ -33,11 +36,32 @@ Response refuse_session(const Request& request, const Limits& limits, StoreRefus
                           ". DELETE sessions that are not needed.");
     }
     if (why == StoreRefusal::IdIsTaken) {
-        return refuse(request, api::ProblemType::Internal, "The new id is taken: try again.");
+        return refuse(request, api::ProblemType::IdTaken,
+                      "A session of that id exists: DELETE it first, or choose another id.");
     }
     return refuse(request, api::ProblemType::TooManySessions,
                   "The limit max_sessions of " + std::to_string(limits.max_sessions) +
                       " is reached. DELETE sessions that are not needed.");
+}
+
+/// Reads the terrain and keeps it. No id: a random one.
+Response make_session(Services& services, const Request& request, std::optional<std::string> id) {
+    const auto format = require_terrain_format(request);
+    if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
+    auto terrain = load_terrain(request.body, std::get<0>(format), services.read_limits());
+    if (!terrain) {
+        return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
+    }
+    const auto added =
+        services.sessions.add(std::move(terrain->tin), terrain->about, std::move(id));
+    if (const auto* why = std::get_if<StoreRefusal>(&added)) {
+        return refuse_session(request, services.limits, *why);
+    }
+    const Session& session = *std::get<0>(added);
+    const api::SessionView view = session.view();
+    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
+    response.with("ETag", session.etag(view.version));
+    return response;
 }
 
 }  // namespace
@@ -50,21 +74,21 @@ Response list_sessions(Services& services, const Request&, const PathArguments&)
 }
 
 Response create_session(Services& services, const Request& request, const PathArguments&) {
-    const auto format = require_terrain_format(request);
-    if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
-    auto terrain = load_terrain(request.body, std::get<0>(format), services.read_limits());
-    if (!terrain) {
-        return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
+    return make_session(services, request, std::nullopt);
+}
+
+Response put_session(Services& services, const Request& request, const PathArguments& arguments) {
+    const std::string& id = arguments[0];
+    if (!is_sane_id(id) || id.front() == '.') {
+        return refuse(request, api::ProblemType::BadRequest,
+                      "An id has 1 to 64 letters, digits, dots, dashes and underscores, and no dot "
+                      "in front.");
     }
-    const auto added = services.sessions.add(std::move(terrain->tin), terrain->about);
-    if (const auto* why = std::get_if<StoreRefusal>(&added)) {
-        return refuse_session(request, services.limits, *why);
+    // Before the terrain is read, which takes long; the store has the last word all the same.
+    if (services.sessions.find(id)) {
+        return refuse_session(request, services.limits, StoreRefusal::IdIsTaken);
     }
-    const Session& session = *std::get<0>(added);
-    const api::SessionView view = session.view();
-    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
-    response.with("ETag", session.etag(view.version));
-    return response;
+    return make_session(services, request, id);
 }
 
 Response get_session(Services& services, const Request& request, const PathArguments& arguments) {

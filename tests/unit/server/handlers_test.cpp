@@ -105,6 +105,21 @@ TEST_F(Handlers, MakeListAndDeleteSessions) {
     EXPECT_EQ(ask("DELETE", path).status, 404);
 }
 
+TEST_F(Handlers, MakeASessionUnderAnIdOfChoice) {
+    const NameValue type{"content-type", "application/json"};
+    const Response made = ask("PUT", "/v1/sessions/hills", {type}, kSquare);
+    EXPECT_EQ(made.status, 201) << made.body;
+    EXPECT_EQ(header(made, "Location"), "/v1/sessions/hills");
+    EXPECT_EQ(ask("GET", "/v1/sessions/hills").body, made.body);
+    const Response again = ask("PUT", "/v1/sessions/hills", {type}, kSquare);
+    EXPECT_EQ(again.status, 409);
+    EXPECT_EQ(told(again), "id-taken");
+    EXPECT_EQ(ask("PUT", "/v1/sessions/a%20b", {type}, kSquare).status, 400);
+    EXPECT_EQ(ask("PUT", "/v1/sessions/..", {type}, kSquare).status, 400);
+    EXPECT_EQ(ask("PUT", "/v1/sessions/x", {type}, "{").status, 400);
+    EXPECT_EQ(ask("GET", "/v1/sessions/x").status, 404);
+}
+
 TEST_F(Handlers, RefuseTooManySessionsByName) {
     for (int i = 0; i < 3; ++i)
         make_session();
