@@ -17,7 +17,7 @@ struct HttpOptions {
     std::size_t threads = 32;
     Limits limits;
     std::chrono::seconds keep_alive{2};       ///< an idle connection holds a thread that long
-    std::chrono::seconds read_timeout{10};    ///< for one read
+    std::chrono::seconds read_timeout{5};     ///< for one read
     std::chrono::seconds body_deadline{120};  ///< for a whole body
 };
 
