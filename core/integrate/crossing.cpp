@@ -39,15 +39,20 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     const VertexId b = tin_.destination(exit);
     const double near = reach_of_rounding_ / 2.0;
     if (const std::optional<VertexId> met = end_within(exit, near)) return connect(*met);
-    if (!needs_swaps && can_absorb(exit, near)) return absorb(exit);
+    if (tin_.apex(exit) == at_ && can_absorb(exit, near)) return absorb(exit);
     if (is_near_edge(exit, end_, near) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
     if (const std::optional<Point2> p = find_split(exit)) {
         count_crossing(exit);
         return reach(place({Location::Kind::OnEdge, exit, {}}, *p), needs_swaps);
     }
-    // Only rounding can forbid the split. Whatever is within its reach will do.
-    if (!needs_swaps && can_absorb(exit, reach_of_rounding_)) return absorb(exit);
+    // Only rounding can forbid the split: a triangle beside the edge is a needle, whose middle
+    // vertex goes onto its long side; or whatever else is within reach.
+    for (const Side beside : {exit, tin_.twin(exit)}) {
+        if (!beside.valid()) continue;
+        for (const Side side : {beside, beside.next(), beside.previous()})
+            if (can_absorb(side, reach_of_rounding_)) return absorb(side);
+    }
     if (!tin_.twin(exit).valid() && !needs_swaps &&
         is_near_edge(exit, tin_.plan(at_), reach_of_rounding_)) {
         leave_mesh();
@@ -136,12 +141,12 @@ bool March::is_near_edge(Side edge, Point2 p, double distance) const {
     return distance_to_segment(p, a, b) <= distance;
 }
 
-/// Whether the vertex on which the march stands, the apex of the edge's triangle, is within the
-/// distance of the edge and can be taken onto it.
+/// Whether the apex of the edge's triangle is within the distance of the edge and can be taken onto
+/// it: the triangle is a needle that rounding made.
 bool March::can_absorb(Side edge, double distance) const {
     const Side across = tin_.twin(edge);
-    if (!across.valid() || tin_.apex(edge) != at_) return false;
-    const Point2 c = tin_.plan(at_);
+    if (!across.valid()) return false;
+    const Point2 c = tin_.plan(tin_.apex(edge));
     if (!is_near_edge(edge, c, distance)) return false;
     const Point2 d = tin_.plan(tin_.apex(across));
     return is_left(tin_.plan(tin_.origin(edge)), d, c) &&
@@ -149,9 +154,9 @@ bool March::can_absorb(Side edge, double distance) const {
 }
 
 bool March::absorb(Side edge) {
+    changed_.push_back(tin_.apex(edge));
     surgery_.absorb_apex(edge);
     ++tally_.edges_swapped;
-    changed_.push_back(at_);
     return true;
 }
 

@@ -15,6 +15,7 @@ struct March::Entry {
     VertexId
         vertex;  ///< meets this vertex; or, when `edge` is valid, crosses the edge that it starts
     Side edge;
+    bool ends_here = false;  ///< the segment ends on the edge, to within rounding
 };
 
 /// From outside: goes to the segment's next meeting with the mesh. False: there is none, the
@@ -72,9 +73,8 @@ std::optional<March::Entry> March::next_entry() const {
             if (is_within || a == start_) offer({along(a), v, {}}, contains(boundary_visits_, v));
             continue;
         }
-        if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0)) {
-            offer({along(end_), v, edge},
-                  contains(boundary_visits_, v) || contains(boundary_visits_, w));
+        if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0) && can_split(edge, end_)) {
+            offer({along(end_), v, edge, true}, false);
             continue;
         }
         const Orientation turn_b = orientation(start_, end_, b);
@@ -104,9 +104,8 @@ Location March::locate_on_boundary(Point2 p) const {
 bool March::enter_by(const Entry& entry) {
     VertexId v = entry.vertex;
     if (entry.edge.valid()) {
-        const double near = reach_of_rounding_ / 2.0;
-        const bool ends_here = is_near_edge(entry.edge, end_, near) && can_split(entry.edge, end_);
-        std::optional<VertexId> met = end_within(entry.edge, near);
+        const bool ends_here = entry.ends_here;
+        std::optional<VertexId> met = end_within(entry.edge, reach_of_rounding_ / 2.0);
         const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
         if (!met && !p) met = end_within(entry.edge, reach_of_rounding_);
         if (met && !ends_here) {

@@ -81,6 +81,11 @@ std::vector<std::string> check_shape_kept(const Operation& op, std::size_t sampl
     const double extent =
         std::hypot(before.max().x - before.min().x, before.max().y - before.min().y);
     const double reach = rounding_reach(before);
+    double steepest = 0.0;  // of the triangles touched
+    const auto& old_triangles = before.mesh().triangles;
+    for (std::uint32_t t = 0; t < old_triangles.size(); ++t)
+        if (after.mesh().triangles[t] != old_triangles[t])
+            steepest = std::max(steepest, before.slope(t));
     double certified = 0.0;
     for (const auto& shape : op.report.shapes)
         certified += shape.max_vertical_deviation;
@@ -95,7 +100,7 @@ std::vector<std::string> check_shape_kept(const Operation& op, std::size_t sampl
         }
         if (!t) return;
         const double difference = std::fabs(before.elevation(*t, p) - after.elevation(*u, p));
-        const double slope = std::max(before.slope(*t), 0.0);
+        const double slope = std::max(before.slope(*t), steepest);
         // A sample within rounding of an edge may take either triangle's plane there.
         if (difference > 1e-9 * extent + reach * slope)
             broken.push_back(words("G2 ", what, " at ", p.x, " ", p.y, " is off by ", difference));
@@ -111,7 +116,7 @@ std::vector<std::string> check_shape_kept(const Operation& op, std::size_t sampl
         compare(vertex.plan(), "new vertex");
         const auto t = before.triangle_at(vertex.plan(), 8 * reach);
         if (t && std::fabs(before.elevation(*t, vertex.plan()) - vertex.z) >
-                     1e-9 * extent + 8 * reach * before.slope(*t))
+                     1e-9 * extent + reach * std::max(before.slope(*t), steepest))
             broken.push_back(words("G2 new vertex ", v, " is not on the old surface"));
     }
     std::mt19937_64 random(seed);
