@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The binary as a server: how it starts, serves, refuses and stops.
 #include <csignal>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -186,6 +187,30 @@ TEST_F(Service, EditsAMeshFromEndToEnd) {
     EXPECT_EQ(glb.body.substr(0, 4), "glTF");
     EXPECT_EQ(glb.header("content-type"), "model/gltf-binary");
     EXPECT_NE(glb.header("tinsmith-max-error"), "");
+}
+
+TEST_F(Service, KeepsEveryEditOfManyClients) {
+    constexpr int kClients = 4;
+    constexpr int kEdits = 10;
+    const std::string session = make_session();
+    std::vector<std::thread> clients;
+    for (int client = 0; client < kClients; ++client) {
+        clients.emplace_back([client, &session] {
+            for (int edit = 0; edit < kEdits; ++edit) {
+                const std::string x = std::to_string(1 + client * 2);
+                const std::string y = std::to_string(0.5 + edit * 0.75);
+                const std::string line = R"({"type": "LineString", "coordinates": [[)" + x + "," +
+                                         y + "],[" + x + ".5,9.5]]}";
+                EXPECT_EQ(ask(port(), "POST", session + "/polygons", {kJson}, line).status, 200);
+                EXPECT_EQ(ask(port(), "GET", session + "/mesh.glb").status, 200);
+            }
+        });
+    }
+    for (std::thread& client : clients)
+        client.join();
+    const auto after = json::parse(ask(port(), "GET", session).body);
+    EXPECT_EQ(after["version"], 1 + kClients * kEdits);
+    EXPECT_EQ(after["polygons"], kClients * kEdits);
 }
 
 TEST(ServiceStart, RefusesATakenPort) {
