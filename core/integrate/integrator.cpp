@@ -2,8 +2,8 @@
 #include "core/integrate/integrator.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "core/integrate/improve.hpp"
@@ -207,11 +207,14 @@ bool encloses_mesh(const Tin& tin, std::span<const Shape> shapes) {
     });
 }
 
+std::string millimetres(double value) {
+    char text[400];  // the largest double has 309 digits before the point
+    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, 3).ptr};
+}
+
 std::string describe(Point2 low, Point2 high) {
-    char text[160];
-    std::snprintf(text, sizeof text, "x %.3f to %.3f, y %.3f to %.3f", low.x, high.x, low.y,
-                  high.y);
-    return text;
+    return "x " + millimetres(low.x) + " to " + millimetres(high.x) + ", y " + millimetres(low.y) +
+           " to " + millimetres(high.y);
 }
 
 Error outside_error(const Tin& tin, std::span<const Shape> shapes) {
@@ -256,8 +259,9 @@ Errors leaving_errors(const Report& report) {
             place.path = part.path;
             place.position = part.points.front();
             errors.push_back({ErrorCode::LeavesMesh,
-                              "the path is outside the mesh from here to " +
-                                  describe(part.points.back(), part.points.back()) +
+                              "the path is outside the mesh from here to x " +
+                                  millimetres(part.points.back().x) + ", y " +
+                                  millimetres(part.points.back().y) +
                                   "; cut it at the mesh, or ask to skip what is outside",
                               place});
         }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes: the reader answers with a value or with faults, in bounded memory.
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "api/formats/terrain_json.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    tinsmith::api::ReadLimits limits;
+    limits.max_vertices = 10'000;
+    limits.max_triangles = 20'000;
+    limits.max_polygon_vertices = 10'000;
+    const auto parsed =
+        tinsmith::api::read_terrain_json({reinterpret_cast<const char*>(data), size}, limits);
+    if (!parsed && (parsed.faults().empty() || parsed.faults().size() > limits.max_faults))
+        std::abort();
+    return 0;
+}
