@@ -22,6 +22,10 @@ bool March::connect(VertexId t) {
             continue;
         }
         const std::optional<VertexId> next = collect_corridor(target);
+        if (const Side edge = next ? Side{} : edge_on_way(along(tin_.plan(target))); edge.valid()) {
+            follow_edge(edge);
+            continue;
+        }
         if (!next)
             return fail(ErrorCode::NotRepresentable,
                         "rounding leaves no way to this segment within the promised distance; "
@@ -72,6 +76,35 @@ std::optional<VertexId> March::collect_corridor(VertexId t) {
                 break;
         }
     }
+}
+
+/// An edge from where the march stands that goes on along the input segment to within rounding, no
+/// farther than `limit`. Rounding bends straight outlines: the way along one may leave the mesh.
+Side March::edge_on_way(double limit) const {
+    const double here = along(tin_.plan(at_));
+    Side best;
+    double best_along = here;
+    const auto offer = [&](Side edge, VertexId end) {
+        const Point2 p = tin_.plan(end);
+        const double there = along(p);
+        if (there <= here || there > limit || (best.valid() && there >= best_along)) return;
+        if (!is_near_segment(p, reach_of_rounding_ / 2.0)) return;
+        best = edge;
+        best_along = there;
+    };
+    const Side start = side_from(tin_, at_);
+    Side s = start;
+    do {  // counter-clockwise
+        offer(s, tin_.destination(s));
+        offer(s.previous(), tin_.apex(s));
+        s = tin_.twin(s.previous());
+    } while (s.valid() && s != start);
+    if (s.valid()) return best;
+    for (s = tin_.twin(start); s.valid(); s = tin_.twin(s)) {
+        s = s.next();
+        offer(s, tin_.destination(s));
+    }
+    return best;
 }
 
 /// Swaps all edges of the corridor away, so that at_ and t are joined. An edge whose two triangles

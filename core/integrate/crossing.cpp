@@ -166,14 +166,20 @@ std::optional<VertexId> March::end_within(Side edge, double distance) const {
     std::optional<VertexId> nearest;
     for (const VertexId v : {tin_.origin(edge), tin_.destination(edge)}) {
         const Point2 p = tin_.plan(v);
-        const AreaEstimate area = estimate_doubled_area(start_, end_, p);
-        if (v == at_ || std::fabs(area.value) > distance * length_ + area.error) continue;
-        const double off = distance_to_segment(p, start_, end_);
-        if (off > distance) continue;
-        distance = off;
+        if (!is_near_segment(p, distance)) continue;
+        // Never back: what is not ahead of where the march stands was passed.
+        if (at_.valid() && along(p) <= along(tin_.plan(at_))) continue;
+        distance = distance_to_segment(p, start_, end_);
         nearest = v;
     }
     return nearest;
+}
+
+/// Whether p is within the distance of the input segment. Filtered like `is_near_edge`.
+bool March::is_near_segment(Point2 p, double distance) const {
+    const AreaEstimate area = estimate_doubled_area(start_, end_, p);
+    if (std::fabs(area.value) > distance * length_ + area.error) return false;
+    return distance_to_segment(p, start_, end_) <= distance;
 }
 
 void March::count_crossing(Side edge) {

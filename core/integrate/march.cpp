@@ -58,7 +58,10 @@ bool March::advance(Point2 end) {
                 if (!cross(departure.side)) return false;
                 break;
             case Departure::Kind::Outside:
-                leave_mesh();
+                if (const Side edge = edge_on_way(along(end_)); edge.valid())
+                    follow_edge(edge);
+                else
+                    leave_mesh();
                 break;
         }
     }
@@ -106,10 +109,15 @@ bool March::follow(const Departure& departure) {
         const VertexId end = place({Location::Kind::OnEdge, departure.side, {}}, end_);
         return reach(end, false);
     }
-    surgery_.mark_constrained(departure.side);
-    measure(tin_.plan(next));
-    at_ = next;
+    follow_edge(departure.side);
     return true;
+}
+
+/// Goes along an edge from where the march stands to its other end.
+void March::follow_edge(Side edge) {
+    surgery_.mark_constrained(edge);
+    at_ = tin_.origin(edge) == at_ ? tin_.destination(edge) : tin_.origin(edge);
+    measure(tin_.plan(at_));
 }
 
 /// Goes through triangles, from the one in front of `at_` whose far side is `exit`, up to the first

@@ -71,6 +71,7 @@ class March {
     // march.cpp
     VertexId place(Location location, Point2 p);
     bool follow(const Departure& departure);
+    void follow_edge(Side edge);
     bool cross(Side exit);
     bool reach(VertexId t, bool needs_swaps);
     bool within_budget();
@@ -81,6 +82,7 @@ class March {
     std::optional<Point2> find_split(Side edge) const;
     Point2 intersection(Side edge) const;
     bool can_split(Side edge, Point2 p) const;
+    bool is_near_segment(Point2 p, double distance) const;
     bool is_near_edge(Side edge, Point2 p, double distance) const;
     bool can_absorb(Side edge, double distance) const;
     bool absorb(Side edge);
@@ -91,6 +93,7 @@ class March {
     // connect.cpp
     bool connect(VertexId t);
     std::optional<VertexId> collect_corridor(VertexId t);
+    Side edge_on_way(double limit) const;
     bool clear_corridor(VertexId t);
 
     // outside.cpp

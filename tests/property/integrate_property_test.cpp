@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guarantees on random meshes and shapes of every kind, the whole mesh checked after each
 // operation. A failure names its seed; TINSMITH_SEED=n runs that one alone, TINSMITH_OPERATIONS=n
-// sets how many are tried.
+// sets how many are tried, TINSMITH_FIRST_SEED=n where the seeds begin.
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -98,7 +98,8 @@ TEST(IntegrateProperty, GuaranteesHoldOnRandomMeshesAndShapes) {
     const std::uint64_t wanted = number_from("TINSMITH_OPERATIONS", 4000);
     const std::uint64_t only = number_from("TINSMITH_SEED", 0);
     std::uint64_t operations = 0, refused = 0, unrepresentable = 0, failures = 0;
-    for (std::uint64_t seed = only != 0 ? only : 1; operations < wanted; ++seed) {
+    const std::uint64_t first = number_from("TINSMITH_FIRST_SEED", 1);
+    for (std::uint64_t seed = only != 0 ? only : first; operations < wanted; ++seed) {
         const auto broken = try_seed(seed, operations, refused, unrepresentable);
         if (!broken.empty()) {
             ++failures;
