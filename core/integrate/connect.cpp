@@ -109,31 +109,38 @@ Side March::edge_on_way(double limit) const {
 
 /// Swaps all edges of the corridor away, so that at_ and t are joined. An edge whose two triangles
 /// are not convex together waits for its neighbours' swaps. Ends: in a corridor some swap is always
-/// possible, and a budget stands behind that. Source: Sloan 1993; Stanchev & Paraskevov 2020.
+/// possible, and rounds without one, or too many with, stop the march.
+/// Source: Sloan 1993; Stanchev & Paraskevov 2020.
 bool March::clear_corridor(VertexId t) {
     const Point2 from = tin_.plan(at_);
     const Point2 to = tin_.plan(t);
-    const std::size_t budget = 64 + 16 * corridor_.size() * corridor_.size();
     for (const auto& [p, q] : corridor_)
         changed_.insert(changed_.end(), {p, q});
-    for (std::size_t i = 0; i < corridor_.size(); ++i) {
-        if (i > budget)
-            return fail(ErrorCode::StepBudget, "swaps did not clear the way within their budget");
-        const auto [p, q] = corridor_[i];
-        const Side side = find_edge(tin_, p, q);
-        const Point2 a = tin_.plan(tin_.origin(side));
-        const Point2 b = tin_.plan(tin_.destination(side));
-        const VertexId c = tin_.apex(side);
-        const VertexId d = tin_.apex(tin_.twin(side));
-        if (!is_left(a, tin_.plan(d), tin_.plan(c)) || !is_left(tin_.plan(d), b, tin_.plan(c))) {
-            corridor_.emplace_back(p, q);
-            continue;
+    std::size_t rounds = 4 * corridor_.size() + 8;
+    while (!corridor_.empty()) {
+        bool swapped = false;
+        waiting_.clear();
+        for (const auto& [p, q] : corridor_) {
+            const Side side = find_edge(tin_, p, q);
+            const Point2 a = tin_.plan(tin_.origin(side));
+            const Point2 b = tin_.plan(tin_.destination(side));
+            const VertexId c = tin_.apex(side);
+            const VertexId d = tin_.apex(tin_.twin(side));
+            if (!is_left(a, tin_.plan(d), tin_.plan(c)) ||
+                !is_left(tin_.plan(d), b, tin_.plan(c))) {
+                waiting_.emplace_back(p, q);
+                continue;
+            }
+            surgery_.swap_edge(side);
+            ++tally_.edges_swapped;
+            swapped = true;
+            if (c == at_ || c == t || d == at_ || d == t) continue;
+            if (orientation(from, to, tin_.plan(c)) != orientation(from, to, tin_.plan(d)))
+                waiting_.emplace_back(c, d);
         }
-        surgery_.swap_edge(side);
-        ++tally_.edges_swapped;
-        if (c == at_ || c == t || d == at_ || d == t) continue;
-        if (orientation(from, to, tin_.plan(c)) != orientation(from, to, tin_.plan(d)))
-            corridor_.emplace_back(c, d);
+        if (!swapped || --rounds == 0)
+            return fail(ErrorCode::StepBudget, "swaps did not clear the way within their budget");
+        corridor_.swap(waiting_);
     }
     return true;
 }

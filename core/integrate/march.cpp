@@ -42,6 +42,7 @@ bool March::advance(Point2 end) {
                         (end.y - start_.y) * (end.y - start_.y));
     steps_ = 0;
     boundary_visits_.clear();
+    entries_known_ = false;
     spent_edges_.clear();
     ++tally_.segments;
     if (!within_budget()) return false;

@@ -97,11 +97,20 @@ class March {
     bool clear_corridor(VertexId t);
 
     // outside.cpp
-    struct Entry;
+    /// A place where the segment meets the boundary coming from outside.
+    struct Entry {
+        double along;     ///< growing along the segment
+        VertexId vertex;  ///< met; or, when `edge` is valid, the first end of the edge crossed
+        Side edge;
+        bool ends_here = false;  ///< the segment ends on the edge, to within rounding
+    };
     bool enter();
-    std::optional<Entry> next_entry() const;
+    void collect_entries();
+    std::optional<Entry> entry_at(VertexId v) const;
+    std::optional<Entry> next_entry();
     bool enter_by(const Entry& entry);
     Location locate_on_boundary(Point2 p) const;
+    void visit_boundary(VertexId v);
     void leave_mesh();
     void close_outside();
     double along(Point2 p) const;
@@ -122,9 +131,14 @@ class March {
     std::size_t path_ = 0;
     std::vector<Point2> outside_;            ///< the stretch outside that is being walked
     std::vector<VertexId> boundary_visits_;  ///< where this segment met the boundary
-    std::vector<VertexId> spent_edges_;      ///< boundary edges that led back to one of those
-    std::vector<std::pair<VertexId, VertexId>>
-        corridor_;  ///< edges between at_ and the next vertex
+    double farthest_visit_ = 0.0;            ///< the last of them along the segment
+    std::vector<Entry> entries_;             ///< all that the segment may meet, in order
+    std::size_t next_entry_ = 0;             ///< the first that is not yet passed
+    bool entries_known_ = false;
+    std::vector<VertexId> spent_edges_;  ///< boundary edges that led back to one of those
+    /// Edges between at_ and the next vertex, by their ends, for swaps move sides about.
+    std::vector<std::pair<VertexId, VertexId>> corridor_;
+    std::vector<std::pair<VertexId, VertexId>> waiting_;
 };
 
 }  // namespace tinsmith::core

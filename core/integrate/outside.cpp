@@ -9,15 +9,6 @@ namespace tinsmith::core {
 
 using enum Orientation;
 
-/// A place where the segment meets the boundary coming from outside.
-struct March::Entry {
-    double along;  ///< growing along the segment
-    VertexId
-        vertex;  ///< meets this vertex; or, when `edge` is valid, crosses the edge that it starts
-    Side edge;
-    bool ends_here = false;  ///< the segment ends on the edge, to within rounding
-};
-
 /// From outside: goes to the segment's next meeting with the mesh. False: there is none, the
 /// segment ends outside (or the march stopped, see `error`).
 bool March::enter() {
@@ -46,46 +37,66 @@ bool contains(const std::vector<VertexId>& vertices, VertexId v) {
 
 }  // namespace
 
-/// The nearest meeting that lies beyond the last one. Meetings within rounding of the last count as
-/// beyond it unless they are of the same edges and vertices: components may touch.
-std::optional<March::Entry> March::next_entry() const {
-    const double rounding = reach_of_rounding_ * length_;
-    double from = -rounding;
+/// All places where the segment may meet the boundary, in order along it. Once for each segment
+/// that gets outside, so that one which leaves the mesh a thousand times looks them up once.
+void March::collect_entries() {
+    entries_known_ = true;
+    entries_.clear();
+    next_entry_ = 0;
+    farthest_visit_ = -reach_of_rounding_ * length_;
     for (const VertexId v : boundary_visits_)
-        from = std::max(from, along(tin_.plan(v)));
+        farthest_visit_ = std::max(farthest_visit_, along(tin_.plan(v)));
+    for (const VertexId v : tin_.boundary().near(start_, end_))
+        if (const std::optional<Entry> entry = entry_at(v)) entries_.push_back(*entry);
+    std::sort(entries_.begin(), entries_.end(), [](const Entry& l, const Entry& r) {
+        return l.along != r.along ? l.along < r.along : l.vertex < r.vertex;
+    });
+}
 
-    std::optional<Entry> best;
-    const auto offer = [&](Entry entry, bool is_known) {
-        if (entry.along < from - rounding || (is_known && entry.along <= from + rounding)) return;
-        if (!best || entry.along < best->along) best = entry;
-    };
-    for (const VertexId v : tin_.boundary().near(start_, end_)) {
-        if (v.index() >= tin_.vertex_count()) continue;
-        const Side edge = boundary_side_from(tin_, v);
-        if (!edge.valid() || contains(spent_edges_, v)) continue;
-        const VertexId w = tin_.destination(edge);
-        const Point2 a = tin_.plan(v);
-        const Point2 b = tin_.plan(w);
-        const Orientation turn_a = orientation(start_, end_, a);
-        if (turn_a == Collinear) {
-            const bool is_within =
-                is_ahead(start_, end_, a) && (a == end_ || is_ahead(end_, start_, a));
-            if (is_within || a == start_) offer({along(a), v, {}}, contains(boundary_visits_, v));
-            continue;
-        }
-        if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0) && can_split(edge, end_)) {
-            offer({along(end_), v, edge, true}, false);
-            continue;
-        }
-        const Orientation turn_b = orientation(start_, end_, b);
-        if (turn_b == Collinear || turn_a == turn_b) continue;
-        // The mesh is on the left of a -> b: the segment enters from its right.
-        if (orientation(a, b, start_) != Clockwise || orientation(a, b, end_) == Clockwise)
-            continue;
-        offer({along(intersection(edge)), v, edge},
-              contains(boundary_visits_, v) || contains(boundary_visits_, w));
+/// How the segment meets the boundary edge that starts at v, or v itself, coming from outside.
+std::optional<March::Entry> March::entry_at(VertexId v) const {
+    if (v.index() >= tin_.vertex_count()) return {};
+    const Side edge = boundary_side_from(tin_, v);
+    if (!edge.valid()) return {};
+    const Point2 a = tin_.plan(v);
+    const Point2 b = tin_.plan(tin_.destination(edge));
+    const Orientation turn_a = orientation(start_, end_, a);
+    if (turn_a == Collinear) {
+        const bool is_behind = a != start_ && !is_ahead(start_, end_, a);
+        const bool is_beyond = a != end_ && !is_ahead(end_, start_, a);
+        if (is_behind || is_beyond) return {};
+        return Entry{along(a), v, {}};
     }
-    return best;
+    if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0) && can_split(edge, end_))
+        return Entry{along(end_), v, edge, true};
+    const Orientation turn_b = orientation(start_, end_, b);
+    if (turn_b == Collinear || turn_a == turn_b) return {};
+    // The mesh is on the left of a -> b: the segment enters from its right.
+    if (orientation(a, b, start_) != Clockwise || orientation(a, b, end_) == Clockwise) return {};
+    return Entry{along(intersection(edge)), v, edge};
+}
+
+/// The first meeting beyond the last one. Meetings within rounding of the last count as beyond it
+/// unless they are of the same edges and vertices: components may touch.
+std::optional<March::Entry> March::next_entry() {
+    if (!entries_known_) collect_entries();
+    const double rounding = reach_of_rounding_ * length_;
+    while (next_entry_ < entries_.size() &&
+           entries_[next_entry_].along < farthest_visit_ - rounding)
+        ++next_entry_;
+    for (std::size_t i = next_entry_; i < entries_.size(); ++i) {
+        const VertexId v = entries_[i].vertex;
+        if (contains(spent_edges_, v)) continue;
+        // The mesh has changed since: the edge may have been split, here or by the way inside.
+        const std::optional<Entry> entry = entry_at(v);
+        if (!entry || entry->along < farthest_visit_ - rounding) continue;
+        if (entry->along > farthest_visit_ + rounding) return entry;
+        const bool is_known =
+            contains(boundary_visits_, v) ||
+            (entry->edge.valid() && contains(boundary_visits_, tin_.destination(entry->edge)));
+        if (entry->ends_here || !is_known) return entry;
+    }
+    return {};
 }
 
 /// The boundary edge next to the position, where it is on it to within rounding.
@@ -124,7 +135,7 @@ bool March::enter_by(const Entry& entry) {
         }
     }
     measure(tin_.plan(v));
-    boundary_visits_.push_back(v);
+    visit_boundary(v);
     tally_.met_mesh = true;
     outside_.push_back(tin_.plan(v));
     close_outside();
@@ -132,9 +143,14 @@ bool March::enter_by(const Entry& entry) {
     return true;
 }
 
+void March::visit_boundary(VertexId v) {
+    boundary_visits_.push_back(v);
+    farthest_visit_ = std::max(farthest_visit_, along(tin_.plan(v)));
+}
+
 /// Leaves the mesh from the vertex where the march stands.
 void March::leave_mesh() {
-    boundary_visits_.push_back(at_);
+    visit_boundary(at_);
     outside_.assign(1, tin_.plan(at_));
     at_ = {};
 }
