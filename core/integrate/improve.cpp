@@ -32,13 +32,13 @@ void Improver::push_star(VertexId v) {
     const Side start = side_from(tin_, v);
     Side s = start;
     do {  // counter-clockwise
-        pending_.push_back(s);
+        pending_.insert(pending_.end(), {s, s.next()});
         s = tin_.twin(s.previous());
     } while (s.valid() && s != start);
     if (s.valid()) return;
     for (s = tin_.twin(start); s.valid(); s = tin_.twin(s)) {
         s = s.next();
-        pending_.push_back(s);
+        pending_.insert(pending_.end(), {s, s.next()});
     }
 }
 
