@@ -142,10 +142,11 @@ bool March::is_near_edge(Side edge, Point2 p, double distance) const {
 }
 
 /// Whether the apex of the edge's triangle is within the distance of the edge and can be taken onto
-/// it: the triangle is a needle that rounding made.
+/// it: the triangle is a needle that rounding made. Where all is needles one can lead to the next
+/// and back, so a vertex takes a few only.
 bool March::can_absorb(Side edge, double distance) const {
     const Side across = tin_.twin(edge);
-    if (!across.valid()) return false;
+    if (!across.valid() || (absorbed_at_ == at_ && absorbed_ >= kMaxAbsorbed)) return false;
     const Point2 c = tin_.plan(tin_.apex(edge));
     if (!is_near_edge(edge, c, distance)) return false;
     const Point2 d = tin_.plan(tin_.apex(across));
@@ -154,6 +155,8 @@ bool March::can_absorb(Side edge, double distance) const {
 }
 
 bool March::absorb(Side edge) {
+    absorbed_ = absorbed_at_ == at_ ? absorbed_ + 1 : 1;
+    absorbed_at_ = at_;
     changed_.push_back(tin_.apex(edge));
     surgery_.absorb_apex(edge);
     ++tally_.edges_swapped;

@@ -128,6 +128,9 @@ class March {
     Point2 end_;
     double length_ = 0.0;
     std::uint64_t steps_ = 0;
+    static constexpr unsigned kMaxAbsorbed = 8;
+    VertexId absorbed_at_;  ///< where the march last absorbed needles, and how many there
+    unsigned absorbed_ = 0;
     std::size_t path_ = 0;
     std::vector<Point2> outside_;            ///< the stretch outside that is being walked
     std::vector<VertexId> boundary_visits_;  ///< where this segment met the boundary
