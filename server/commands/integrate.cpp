@@ -99,8 +99,13 @@ int run_integrate(const IntegrateConfig& config) {
     Progress progress(4);
     const Services services(command_limits());
     auto mesh_options = api::parse_mesh_options(config.mesh_options);
-    if (!mesh_options) {
-        complain("options", mesh_options.faults());
+    if (!mesh_options) complain("options", mesh_options.faults());
+    // Judged once more with the polygons, which may bring options along; by then it is late.
+    const auto polygon_options = api::parse_polygon_options(config.polygon_options);
+    if (!polygon_options) complain("options", polygon_options.faults());
+    if (!mesh_options || !polygon_options) return kExitUsage;
+    if (config.output == config.report) {
+        complain("--output and --report are one file, " + config.output + ": name two");
         return kExitUsage;
     }
     progress.next("reading the terrain");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The binary as a command: outputs, complaints and exit codes.
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -58,6 +60,32 @@ TEST_F(Command, ComplainsInReadableLines) {
     EXPECT_EQ(content_of(glb), "");
     EXPECT_EQ(run({"integrate", "nowhere.tif", bad, "-o", glb}), 1);
     EXPECT_NE(output.find("nowhere.tif: No such file"), std::string::npos) << output;
+}
+
+TEST_F(Command, WritesThroughLinksAndIntoDevices) {
+    const std::string file = scratch.file("file.glb");
+    const std::string link = scratch.file("link.glb");
+    const std::string device = scratch.file("device.glb");
+    write_content(file, "old");
+    std::filesystem::create_symlink(file, link);
+    std::filesystem::create_symlink("/dev/full", device);
+    EXPECT_EQ(run({"integrate", kData + "jacksboro.tif", kData + "lake.geojson", "-o", link}), 0);
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(content_of(file).substr(0, 4), "glTF");
+    EXPECT_EQ(run({"integrate", kData + "jacksboro.tif", kData + "lake.geojson", "-o", device}), 1);
+    EXPECT_NE(output.find("device.glb: No space left on device"), std::string::npos) << output;
+    EXPECT_TRUE(std::filesystem::is_character_file(device)) << "the device is not replaced";
+}
+
+TEST_F(Command, JudgesOptionsBeforeItWorks) {
+    const std::string glb = scratch.file("out.glb");
+    EXPECT_EQ(run({"integrate", "nowhere.tif", "nowhere.json", "-o", glb, "--improve", "quick",
+                   "--tolerance", "0"}),
+              2);
+    EXPECT_NE(output.find("improve"), std::string::npos) << output;
+    EXPECT_NE(output.find("tolerance"), std::string::npos) << output;
+    EXPECT_EQ(run({"integrate", "nowhere.tif", "nowhere.json", "-o", glb, "--report", glb}), 2);
+    EXPECT_NE(output.find("one file"), std::string::npos) << output;
 }
 
 TEST_F(Command, ChecksMeshes) {
