@@ -12,6 +12,7 @@
 #include <optional>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
@@ -149,6 +150,7 @@ class Raster {
     std::optional<Refused> check_units(OGRSpatialReferenceH srs);
     std::optional<Refused> read_elevations();
     std::optional<Refused> check_blocks() const;
+    CPLErr mask_rows(int row, int rows, double* elevations);
     std::optional<Refused> convert();
     bool is_no_data(double value) const;
 
@@ -293,6 +295,19 @@ std::optional<Refused> Raster::check_blocks() const {
     return std::nullopt;
 }
 
+/// A mask inside the file says no-data too.
+CPLErr Raster::mask_rows(int row, int rows, double* elevations) {
+    if ((GDALGetMaskFlags(band_) & GMF_PER_DATASET) == 0) return CE_None;
+    const auto width = GDALGetRasterXSize(dataset_);
+    std::vector<GByte> mask(static_cast<std::size_t>(rows) * width_, 255);
+    const CPLErr status = GDALRasterIO(GDALGetMaskBand(band_), GF_Read, 0, row, width, rows,
+                                       mask.data(), width, rows, GDT_Byte, 0, 0);
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] == 0) elevations[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    return status;
+}
+
 std::optional<Refused> Raster::read_elevations() {
     if (auto no = check_blocks()) return no;
     messages_.forget();  // what was said of the reference system is no damage
@@ -310,8 +325,9 @@ std::optional<Refused> Raster::read_elevations() {
         const std::size_t begin = grid_.elevations.size();
         grid_.elevations.resize(begin + static_cast<std::size_t>(rows) * width_);
         double* const to = grid_.elevations.data() + begin;
-        const CPLErr status =
+        CPLErr status =
             GDALRasterIO(band_, GF_Read, 0, row, width, rows, to, width, rows, GDT_Float64, 0, 0);
+        if (status == CE_None) status = mask_rows(row, rows, to);
         if (status == CE_None && !messages_.complained()) continue;
         return refused(FaultKind::Invalid, "TIFF_DAMAGED",
                        "The raster cannot be read at row " + std::to_string(row) + ": " +
@@ -371,7 +387,10 @@ Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits) {
                                      drivers.data(), nullptr, nullptr));
     if (dataset == nullptr) {
         return {FaultKind::Syntax,
-                {"TIFF_SYNTAX", "The body is no GeoTIFF that can be read: " + messages.complaint(),
+                {"TIFF_SYNTAX",
+                 "The body is no GeoTIFF that can be read: " +
+                     (messages.complained() ? messages.complaint()
+                                            : "it does not begin as a TIFF does."),
                  ""}};
     }
     return Raster(dataset.get(), limits, messages).read();
