@@ -32,6 +32,7 @@ enum class FaultKind {
     Invalid,      ///< well formed, but not what was asked for
     TooLarge,     ///< beyond a limit of this server
     Unsupported,  ///< right and meaningful, but not done by this version
+    Parameter,    ///< an option given outside the body has a value it cannot have
 };
 
 /// Either a value, or a kind and at least one fault; never both, never neither.

@@ -122,6 +122,9 @@ Problem problem_of_faults(FaultKind kind, Faults faults) {
         case FaultKind::Unsupported:
             type = NotAvailable;
             break;
+        case FaultKind::Parameter:
+            type = InvalidParameter;
+            break;
     }
     return {type, summary_of(faults), std::move(faults)};
 }

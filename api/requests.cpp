@@ -37,7 +37,10 @@ class OptionFaults {
 
     bool empty() const { return faults_.empty(); }
     FaultKind kind() const {
-        return all_unsupported_ ? FaultKind::Unsupported : FaultKind::Invalid;
+        if (all_unsupported_) return FaultKind::Unsupported;
+        const bool in_body = std::any_of(faults_.begin(), faults_.end(),
+                                         [](const Fault& fault) { return !fault.pointer.empty(); });
+        return in_body ? FaultKind::Invalid : FaultKind::Parameter;
     }
     Faults take() { return std::move(faults_); }
 

@@ -39,14 +39,19 @@ std::vector<std::shared_ptr<Session>> SessionStore::all() const {
     return list;
 }
 
-bool SessionStore::remove(const std::string& id) {
+Removal SessionStore::remove(const Session& session, std::optional<std::uint64_t> expected) {
     std::shared_ptr<Session> last;  // freed after the lock: a mesh is large
     const std::unique_lock lock(mutex_);
-    const auto found = sessions_.find(id);
-    if (found == sessions_.end()) return false;
+    const auto found = sessions_.find(session.facts().id);
+    if (found == sessions_.end() || found->second.get() != &session) return Removal::Gone;
+    if (expected && *expected != session.view().version) return Removal::OtherVersion;
     last = std::move(found->second);
     sessions_.erase(found);
-    return true;
+    return Removal::Done;
+}
+
+bool SessionStore::is_kept(const Session& session) const {
+    return find(session.facts().id).get() == &session;
 }
 
 std::size_t SessionStore::size() const {

@@ -22,6 +22,8 @@ enum class StoreRefusal {
     IdIsTaken,  ///< the id of choice exists
 };
 
+enum class Removal { Done, Gone, OtherVersion };
+
 /// All sessions of this process, by id. A session that is removed lives on for those who still
 /// hold it. Lookups take a shared lock for the time of a map search.
 class SessionStore {
@@ -39,7 +41,13 @@ class SessionStore {
     /// All sessions in the order of their ids.
     std::vector<std::shared_ptr<Session>> all() const;
 
-    bool remove(const std::string& id);
+    /// Ends this session, unless it has been removed or, where one is expected, has another version
+    /// than that. An edit that finishes later finds itself `is_kept` no more: of an edit and a
+    /// removal at the same time each sees the other or comes after it.
+    Removal remove(const Session& session, std::optional<std::uint64_t> expected = {});
+
+    /// Whether this very session, and not another under its id, is still here.
+    bool is_kept(const Session& session) const;
 
     std::size_t size() const;
 

@@ -36,6 +36,7 @@ class FaultLog {
         switch (kind) {
             case FaultKind::Unsupported:
                 return 0;
+            case FaultKind::Parameter:
             case FaultKind::Invalid:
                 return 1;
             case FaultKind::TooLarge:

@@ -128,8 +128,8 @@ std::variant<std::vector<GlbNode>, EncodeError> compressed(const SceneInput& inp
     const std::optional<PositionGrid> grid = grid_for(bounds, options.tolerance);
     if (!grid)
         return EncodeError{EncodeFault::ToleranceTooFine,
-                           "the finest tolerance for a mesh of this extent is " +
-                               as_text(finest_tolerance(bounds)) + " m"};
+                           "too fine for a mesh of this extent; ask for tolerance=" +
+                               as_text(finest_tolerance(bounds)) + " or coarser"};
     const std::vector<GridPoint> points = quantize(input.mesh, options.unit_to_metre, *grid);
     const PlanCheck check = check_plan(points, input.mesh.triangles);
     result.origin = grid->origin;

@@ -23,11 +23,13 @@ std::string etag_of(const Session& session, std::uint64_t version, std::string_v
 
 Response send_glb(const Session& session, const Request& request) {
     auto options = api::parse_mesh_options(options_of_query(request));
-    if (!options) return refuse_options(request, options.kind(), std::move(options.faults()));
+    if (!options) {
+        return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
+    }
     options->unit_to_metre = api::metres_per(session.facts().unit);
     const MeshCopy copy = session.copy_mesh();
     Response response = glb_response(request, copy.mesh, *options);
-    response.with("ETag", etag_of(session, copy.version, "-glb"));
+    if (response.status == 200) response.with("ETag", etag_of(session, copy.version, "-glb"));
     return response;
 }
 

@@ -58,7 +58,9 @@ Response integrate_polygons(Services& services, const Request& request,
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
 
     auto work = read_polygon_work(request.body, options_of_query(request), services.read_limits());
-    if (!work) return refuse_options(request, work.kind(), std::move(work.faults()));
+    if (!work) {
+        return refuse(request, api::problem_of_faults(work.kind(), std::move(work.faults())));
+    }
     if (const auto fault = crs_fault(*work, session.facts().crs)) {
         return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, {*fault}));
     }
@@ -74,6 +76,10 @@ Response integrate_polygons(Services& services, const Request& request,
     }
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
         return refuse(request, api::problem_of_errors(*errors, faults_of(*errors, work->shapes)));
+    }
+    if (!dry_run && !services.sessions.is_kept(session)) {
+        return refuse(request, api::ProblemType::NoSuchSession,
+                      "The session was deleted while the edit ran: nothing of it is kept.");
     }
     const auto& result = std::get<PolygonResult>(outcome);
     Response response = as_glb ? send_mesh_after(request, session, result, dry_run)

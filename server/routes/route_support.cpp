@@ -48,11 +48,29 @@ std::optional<std::uint64_t> version_in(std::string_view tag, const std::string&
     return error == std::errc() && whole ? std::optional(version) : std::nullopt;
 }
 
+/// The elements of a list such as `"a-1", "b-2"`. A comma within a tag, which ours never have,
+/// makes two of it that match nothing.
+std::vector<std::string_view> listed(std::string_view text) {
+    std::vector<std::string_view> tags;
+    for (std::size_t end = 0; end != text.npos;
+         text.remove_prefix(std::min(end + 1, text.size()))) {
+        end = text.find(',');
+        std::string_view tag = text.substr(0, end);
+        tag.remove_prefix(std::min(tag.find_first_not_of(" \t"), tag.size()));
+        tags.push_back(tag.substr(0, tag.find_last_not_of(" \t") + 1));
+    }
+    return tags;
+}
+
 }  // namespace
 
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id) {
     if (auto session = services.sessions.find(id)) return session;
+    return no_such_session(request, id);
+}
+
+Response no_such_session(const Request& request, const std::string& id) {
     return refuse(request, api::ProblemType::NoSuchSession,
                   "No session has the id \"" + id.substr(0, 64) +
                       "\". GET /v1/sessions lists them; they are gone when the server stops.");
@@ -60,10 +78,20 @@ Step<std::shared_ptr<Session>> require_session(Services& services, const Request
 
 Step<std::optional<std::uint64_t>> require_if_match(const Request& request,
                                                     const Session& session) {
-    const auto header = request.header("if-match");
-    if (!header || *header == "*") return std::nullopt;
-    if (const auto version = version_in(*header, session.facts().birth)) return version;
-    return version_mismatch(request, session, session.view().version);
+    const std::uint64_t current = session.view().version;
+    std::optional<std::uint64_t> named;
+    bool asked = false;
+    for (const auto& [name, value] : request.headers) {
+        if (name != "if-match") continue;
+        if (value == "*") return std::nullopt;
+        asked = true;
+        for (const std::string_view tag : listed(value)) {
+            const auto version = version_in(tag, session.facts().birth);
+            if (version && named != current) named = version;
+        }
+    }
+    if (!asked || named) return named;
+    return version_mismatch(request, session, current);
 }
 
 Response version_mismatch(const Request& request, const Session& session, std::uint64_t current) {
@@ -108,17 +136,6 @@ std::vector<api::NamedOption> options_of_query(const Request& request) {
     for (const auto& [name, value] : request.query)
         options.push_back({name, value, {}});
     return options;
-}
-
-Response refuse_options(const Request& request, api::FaultKind kind, api::Faults faults) {
-    const bool query_only = std::all_of(faults.begin(), faults.end(), [](const api::Fault& fault) {
-        return fault.pointer.empty();
-    });
-    api::Problem problem = api::problem_of_faults(kind, std::move(faults));
-    if (kind == api::FaultKind::Invalid && query_only) {
-        problem.type = api::ProblemType::InvalidParameter;
-    }
-    return refuse(request, problem);
 }
 
 Response glb_response(const Request& request, const core::MeshData& mesh,

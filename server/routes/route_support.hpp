@@ -25,8 +25,10 @@ using Step = std::variant<T, Response>;
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id);
 
-/// The version that If-Match asks for; nothing where there is no If-Match or it is "*". 412 where
-/// it names none of this session's life.
+Response no_such_session(const Request& request, const std::string& id);
+
+/// The version that If-Match asks for; nothing where there is no If-Match or it is "*". Of several
+/// the one that is current counts. 412 where it names none of this session's life.
 Step<std::optional<std::uint64_t>> require_if_match(const Request& request, const Session& session);
 
 /// 412, with the current version as ETag.
@@ -42,9 +44,6 @@ Response refuse_media_type(const Request& request, const std::string& type, std:
 
 /// The query as options, with no place in the body.
 std::vector<api::NamedOption> options_of_query(const Request& request);
-
-/// The answer for options that were refused: 400 where only the query is at fault, 422 otherwise.
-Response refuse_options(const Request& request, api::FaultKind kind, api::Faults faults);
 
 /// The mesh as GLB, with headers that say what rounding did, or why it cannot be written. `note`
 /// is told with a refusal: what has been done all the same.

@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include <malloc.h>
+
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
 #include "server/random_id.hpp"
@@ -103,16 +105,23 @@ Response get_session(Services& services, const Request& request, const PathArgum
 
 Response delete_session(Services& services, const Request& request,
                         const PathArguments& arguments) {
-    const auto found = require_session(services, request, arguments[0]);
+    auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
-    const Session& session = *std::get<0>(found);
-    const auto expected = require_if_match(request, session);
+    auto& session = std::get<0>(found);
+    const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
-    const std::uint64_t version = session.view().version;
-    if (std::get<0>(expected).value_or(version) != version) {
-        return version_mismatch(request, session, version);
+    switch (services.sessions.remove(*session, std::get<0>(expected))) {
+        case Removal::OtherVersion:
+            return version_mismatch(request, *session, session->view().version);
+        case Removal::Gone:
+            return no_such_session(request, arguments[0]);
+        case Removal::Done:
+            break;
     }
-    services.sessions.remove(arguments[0]);
+    session.reset();
+    // The allocator keeps what large meshes leave behind, a gigabyte easily, and gives it back to
+    // the system only when told to.
+    ::malloc_trim(0);
     return no_content();
 }
 

@@ -55,6 +55,7 @@ TEST(ProblemOfFaults, ChoosesTheStatusByKind) {
     EXPECT_EQ(status(FaultKind::Invalid), 422);
     EXPECT_EQ(status(FaultKind::Unsupported), 422);
     EXPECT_EQ(status(FaultKind::TooLarge), 413);
+    EXPECT_EQ(status(FaultKind::Parameter), 400);
 }
 
 TEST(ProblemOfErrors, KnowsEveryCodeOfTheCore) {

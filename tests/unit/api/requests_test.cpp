@@ -115,7 +115,7 @@ TEST(MeshOptions, RefuseTolerancesThatAreNone) {
         const std::vector<NamedOption> options{{"tolerance", value, ""}};
         const auto parsed = parse_mesh_options(options);
         ASSERT_FALSE(parsed) << value;
-        EXPECT_EQ(parsed.kind(), FaultKind::Invalid);
+        EXPECT_EQ(parsed.kind(), FaultKind::Parameter) << "the body is not at fault";
     }
     const std::vector<NamedOption> later{{"compression", "meshopt", ""}, {"version", "3", ""}};
     const auto parsed = parse_mesh_options(later);

@@ -215,6 +215,8 @@ TEST_F(Handlers, LeaveTheSessionAloneWhateverTheFault) {
              {R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[2,2]]]})", 422},
              {R"({"type": "Pentagon", "coordinates": []})", 422},
              {R"({"type": "Polygon", "coordinates": [[[20,20],[50,20],[50,50],[20,20]]]})", 422},
+             {R"({"type": "Polygon"})", 422},
+             {"null", 422},
              {"[", 400},
              {"", 400}}) {
         const Response refused = post(session + "/polygons", body);
@@ -235,6 +237,14 @@ TEST_F(Handlers, HonourIfMatch) {
     EXPECT_EQ(header(stale, "ETag"), header(ask("GET", session), "ETag"));
     EXPECT_EQ(post(session + "/polygons", kParcel, {{"if-match", "\"nonsense\""}}).status, 412);
     EXPECT_EQ(ask("DELETE", session, {{"if-match", tag}}).status, 412);
+    const std::string now = header(ask("GET", session), "ETag");
+    const std::string dry = session + "/polygons?dry_run=true";
+    EXPECT_EQ(post(dry, kParcel, {{"if-match", "\"x\" , " + now}}).status, 200);
+    EXPECT_EQ(post(dry, kParcel, {{"if-match", now + "," + tag}}).status, 200);
+    EXPECT_EQ(post(dry, kParcel, {{"if-match", tag}, {"if-match", now}}).status, 200);
+    EXPECT_EQ(post(dry, kParcel, {{"if-match", tag + ", \"x\""}}).status, 412);
+    EXPECT_EQ(post(dry, kParcel, {{"if-match", "W/" + now}}).status, 412) << "strong tags only";
+    EXPECT_EQ(post(dry, kParcel, {{"if-match", ",, "}}).status, 412);
     const std::string mesh_tag = header(ask("GET", session + "/mesh"), "ETag");
     EXPECT_EQ(ask("DELETE", session, {{"if-match", mesh_tag}}).status, 204);
 }
@@ -250,6 +260,9 @@ TEST_F(Handlers, SendTheMeshInTheFormAskedFor) {
     EXPECT_NE(header(glb, "Tinsmith-Max-Error"), "");
     EXPECT_EQ(header(glb, "Tinsmith-Flipped-Triangles"), "0");
     EXPECT_EQ(ask("GET", mesh + "?tolerance=-1").status, 400);
+    const Response too_fine = ask("GET", mesh + "?tolerance=1e-12");
+    EXPECT_EQ(too_fine.status, 400);
+    EXPECT_EQ(header(too_fine, "ETag"), "") << "a refusal is no representation";
     EXPECT_EQ(ask("GET", mesh + "?compression=meshopt").status, 422);
     EXPECT_EQ(ask("GET", mesh + ".json?up=z").status, 400);
     EXPECT_EQ(json::parse(ask("GET", mesh + ".json").body)["triangles"].size(), 2U);

@@ -111,8 +111,11 @@ TEST(SessionStore, KeepsFindsAndRemoves) {
     EXPECT_EQ(store.find(kept->facts().id), kept);
     EXPECT_EQ(store.find("other"), nullptr);
     EXPECT_EQ(store.all().size(), 1U);
-    EXPECT_TRUE(store.remove(kept->facts().id));
-    EXPECT_FALSE(store.remove(kept->facts().id));
+    EXPECT_TRUE(store.is_kept(*kept));
+    EXPECT_EQ(store.remove(*kept, 2), Removal::OtherVersion);
+    EXPECT_EQ(store.remove(*kept, 1), Removal::Done);
+    EXPECT_EQ(store.remove(*kept), Removal::Gone);
+    EXPECT_FALSE(store.is_kept(*kept));
     EXPECT_EQ(store.size(), 0U);
     EXPECT_EQ(kept->view().triangles, 2U) << "who holds it may still read";
 }
@@ -144,7 +147,7 @@ TEST(SessionStore, CountsItsMemory) {
 TEST(SessionStore, GivesEachLifeOfAnIdAnotherBirth) {
     SessionStore store{Limits{}};
     const auto first = std::get<0>(store.add(square(), {}, "a"));
-    store.remove("a");
+    store.remove(*first);
     const auto second = std::get<0>(store.add(square(), {}, "a"));
     EXPECT_NE(first->etag(1), second->etag(1));
 }

@@ -290,7 +290,8 @@ TEST(WriteGlb, SaysWhichToleranceItCanHold) {
     const core::MeshData mesh = hills(40, 40, 1000);
     const EncodeError error = refused(mesh, {.tolerance = 1e-6});
     EXPECT_EQ(error.fault, EncodeFault::ToleranceTooFine);
-    EXPECT_EQ(error.detail, "the finest tolerance for a mesh of this extent is 3.0517578125e-05 m");
+    EXPECT_EQ(error.detail,
+              "too fine for a mesh of this extent; ask for tolerance=3.0517578125e-05 or coarser");
     const EncodeError plain = refused(mesh, {.compression = Compression::None, .tolerance = 1e-4});
     EXPECT_EQ(plain.fault, EncodeFault::ToleranceTooFine);
     EXPECT_NE(plain.detail.find("or coarser"), std::string::npos);
