@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iostream>
 #include <map>
 
 #include <CLI/CLI.hpp>
@@ -58,17 +59,34 @@ CLI::Option* add_setting(CLI::App& app, const std::string& name, T& value,
         ->capture_default_str();
 }
 
+/// The library reads -5 as 2^64 - 5 and lets not-a-number through every range: no limit at all.
+CLI::Validator digit_first() {
+    return {[](std::string& text) {
+                const bool is_digit = !text.empty() && text.front() >= '0' && text.front() <= '9';
+                return is_digit ? std::string() : "\"" + text + "\" does not begin with a digit";
+            },
+            "", "digit_first"};
+}
+
 void add_limits(CLI::App& app, Limits& limits) {
+    const auto add = [&app](const std::string& name, auto& value, const std::string& text) {
+        return add_setting(app, name, value, text);
+    };
+    // What is added last by `transform` is asked first.
     const auto bytes = CLI::AsSizeValue(false);
-    add_setting(app, "max_body_bytes", limits.max_body_bytes, "Largest request body (256MB, 1GB)")
-        ->transform(bytes);
-    add_setting(app, "max_memory_bytes", limits.max_memory_bytes, "Of all meshes together")
-        ->transform(bytes);
-    add_setting(app, "max_sessions", limits.max_sessions, "Sessions at the same time");
-    add_setting(app, "max_vertices", limits.max_vertices, "Vertices of a terrain");
-    add_setting(app, "max_triangles", limits.max_triangles, "Triangles of a session");
-    add_setting(app, "max_crossings", limits.max_crossings, "Edges crossed by one request");
-    add_setting(app, "max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
+    add("max_body_bytes", limits.max_body_bytes, "Largest request body (256MB, 1GB)")
+        ->transform(bytes)
+        ->transform(digit_first());
+    add("max_memory_bytes", limits.max_memory_bytes, "Of all meshes together")
+        ->transform(bytes)
+        ->transform(digit_first());
+    add("max_sessions", limits.max_sessions, "Sessions at the same time")->check(digit_first());
+    add("max_vertices", limits.max_vertices, "Vertices of a terrain")->check(digit_first());
+    add("max_triangles", limits.max_triangles, "Triangles of a session")->check(digit_first());
+    add("max_crossings", limits.max_crossings, "Edges crossed by one request")
+        ->check(digit_first());
+    add("max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
+        ->check(digit_first())
         ->check(CLI::PositiveNumber);
 }
 
@@ -150,6 +168,12 @@ Command parse_command_line(int argc, const char* const* argv) {
     add_check(app, check);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::ConfigError& error) {
+        // The library blames "INI" and does not say what would have been right.
+        std::cerr << "The settings file: " << error.what()
+                  << ". A key is a flag without its dashes in front (max-sessions = 5), in the "
+                     "section of its command ([serve]).\n";
+        return kExitUsage;
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? kExitOk : kExitUsage;
     }

@@ -83,7 +83,8 @@ Head head_of(const httplib::Request& raw) {
     if (!target || target->query.size() > kMaxQueryParameters) {
         head.ok = false;
         head.fault = target ? "Too many query parameters."
-                            : "The path or query has a broken %-escape or a control character.";
+                            : "The target must be a path that begins with \"/\", with no broken "
+                              "%-escape and no control character in it or its query.";
         return head;
     }
     request.query = std::move(target->query);

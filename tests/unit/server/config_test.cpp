@@ -63,6 +63,11 @@ TEST(CommandLine, RefusesWrongUsage) {
     EXPECT_EQ(exit_code({"serve", "--port", "65536"}), kExitUsage);
     EXPECT_EQ(exit_code({"serve", "--threads", "0"}), kExitUsage);
     EXPECT_EQ(exit_code({"integrate", "a.tif"}), kExitUsage);
+    for (const char* flag : {"--max-sessions", "--max-body-bytes", "--max-memory-bytes",
+                             "--max-crossings", "--max-edit-seconds"}) {
+        EXPECT_EQ(exit_code({"serve", flag, "-5"}), kExitUsage) << flag;
+    }
+    EXPECT_EQ(exit_code({"serve", "--max-edit-seconds", "nan"}), kExitUsage);
 }
 
 TEST(CommandLine, ReadsServe) {
