@@ -63,13 +63,12 @@ Errors check_shapes(std::span<const Shape> shapes) {
 class ShapeIntegration {
   public:
     ShapeIntegration(Surgery& surgery, const IntegrateOptions& options, Stopwatch& watch,
-                     StageTimes& times)
+                     StageTimes& times, const MarchLimits& limits)
         : surgery_(surgery),
           options_(options),
           watch_(watch),
           times_(times),
-          limits_{options.max_crossings, options.max_new_triangles, &options.cancelled},
-          march_(surgery, limits_),
+          march_(surgery, limits),
           improver_(surgery) {}
 
     /// False: see `march().error()`.
@@ -106,7 +105,7 @@ class ShapeIntegration {
 
   private:
     bool run(std::size_t index, const Path& path) {
-        march_.begin(index, path.points.front());
+        if (!march_.begin(index, path.points.front())) return false;
         watch_.lap(times_.locate);
         Point2 last = path.points.front();
         const std::size_t count = path.points.size();
@@ -120,9 +119,9 @@ class ShapeIntegration {
             last = next;
             improve(kImproveBatch);
         }
-        march_.finish();
+        const bool done = march_.finish();
         watch_.lap(times_.integrate);
-        return true;
+        return done;
     }
 
     /// Improves once so many vertices wait: often enough that facets stay in good shape for the
@@ -154,7 +153,6 @@ class ShapeIntegration {
     const IntegrateOptions& options_;
     Stopwatch& watch_;
     StageTimes& times_;
-    MarchLimits limits_;
     March march_;
     Improver improver_;
 };
@@ -281,9 +279,11 @@ Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const Integrat
             Surgery::undo(tin, *record);
     };
     bool met_mesh = false;
+    // The budgets are the request's: each shape leaves the rest of them to the next.
+    MarchLimits limits{options.max_crossings, options.max_new_triangles, &options.cancelled};
     for (std::size_t s = 0; s < shapes.size(); ++s) {
         Surgery surgery(tin);
-        ShapeIntegration integration(surgery, options, watch, report.time_ms);
+        ShapeIntegration integration(surgery, options, watch, report.time_ms, limits);
         if (!integration.run(shapes[s])) {
             Error error = *integration.march().error();
             error.place.shape = s;
@@ -291,7 +291,10 @@ Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const Integrat
             take_back();
             return error;
         }
-        met_mesh = met_mesh || integration.march().tally().met_mesh;
+        const MarchTally& tally = integration.march().tally();
+        met_mesh = met_mesh || tally.met_mesh;
+        limits.max_crossings -= tally.crossings + tally.self_crossings;
+        limits.max_new_triangles -= tin.triangle_count() - surgery.record().triangle_count;
         report.shapes.push_back(integration.report());
         done.push_back(surgery.commit());
         watch.lap(report.time_ms.integrate);

@@ -20,7 +20,7 @@ March::March(Surgery& surgery, const MarchLimits& limits)
     reach_of_rounding_ = 4.0 * ulp(largest);
 }
 
-void March::begin(std::size_t path, Point2 start) {
+bool March::begin(std::size_t path, Point2 start) {
     path_ = path;
     end_ = start;
     outside_.clear();
@@ -29,10 +29,11 @@ void March::begin(std::size_t path, Point2 start) {
     if (location.kind == Location::Kind::Outside) {
         at_ = {};
         outside_.push_back(start);
-        return;
+        return within_limits();
     }
     tally_.met_mesh = true;
     at_ = place(location, start);
+    return within_limits();
 }
 
 bool March::advance(Point2 end) {
@@ -68,9 +69,10 @@ bool March::advance(Point2 end) {
     }
 }
 
-void March::finish() {
+bool March::finish() {
     if (!at_.valid()) close_outside();
     at_ = {};
+    return within_limits();
 }
 
 /// Makes a position that was located a vertex, on the facet's plane or edge. One that is on an edge
@@ -176,13 +178,18 @@ bool March::within_budget() {
     // A straight way meets each triangle once; the rest is room for what rounding repeats.
     if (++steps_ > 4 * tin_.triangle_count() + 1024)
         return fail(ErrorCode::StepBudget, "the march did not end within its budget of steps");
+    return within_limits();
+}
+
+bool March::within_limits() {
     if (tally_.crossings + tally_.self_crossings > limits_.max_crossings)
         return fail(ErrorCode::CrossingBudget,
                     "the request crosses more edges than allowed; send it in parts");
     if (tin_.triangle_count() - surgery_.record().triangle_count > limits_.max_new_triangles)
         return fail(ErrorCode::TriangleBudget,
                     "the request makes more triangles than allowed; send it in parts");
-    if (limits_.cancelled != nullptr && *limits_.cancelled && steps_ % 256 == 1 &&
+    constexpr std::uint64_t kAskEvery = 256;
+    if (limits_.cancelled != nullptr && *limits_.cancelled && asked_++ % kAskEvery == 0 &&
         (*limits_.cancelled)())
         return fail(ErrorCode::Cancelled, "the request was cancelled; nothing was changed");
     return true;

@@ -53,13 +53,13 @@ class March {
   public:
     March(Surgery& surgery, const MarchLimits& limits);
 
-    /// Begins a path at its first point. Costs a location.
-    void begin(std::size_t path, Point2 start);
+    /// Begins a path at its first point. Costs a location. False: stopped, see `error`.
+    bool begin(std::size_t path, Point2 start);
     /// Integrates the segment from where the march stands to `end`. Requires: begin was called, and
     /// end differs from the position before. False: stopped, see `error`.
     bool advance(Point2 end);
-    /// Ends the path: closes what runs outside.
-    void finish();
+    /// Ends the path: closes what runs outside. False: stopped, see `error`.
+    bool finish();
 
     const MarchTally& tally() const { return tally_; }
     MarchTally& tally() { return tally_; }
@@ -75,6 +75,7 @@ class March {
     bool cross(Side exit);
     bool reach(VertexId t, bool needs_swaps);
     bool within_budget();
+    bool within_limits();
     bool fail(ErrorCode code, const char* detail);
 
     // crossing.cpp
@@ -128,6 +129,7 @@ class March {
     Point2 end_;
     double length_ = 0.0;
     std::uint64_t steps_ = 0;
+    std::uint64_t asked_ = 0;  ///< how often the limits were looked at
     static constexpr unsigned kMaxAbsorbed = 8;
     VertexId absorbed_at_;  ///< where the march last absorbed needles, and how many there
     unsigned absorbed_ = 0;

@@ -23,8 +23,6 @@ class TinBuilder {
         if (!errors_.empty()) return std::move(errors_);
         collect_fans();
         if (!errors_.empty()) return std::move(errors_);
-        mark_constraints();
-        if (!errors_.empty()) return std::move(errors_);
         index();
         return std::move(tin_);
     }
@@ -49,17 +47,27 @@ class TinBuilder {
 
     void check_coordinates();
     void check_triangles();
+    void sort_sides();
+    Side find_side(VertexId from, VertexId to) const;
     void link();
+    void mark_constraints();
     void collect_fans();
     void collect_fan(Side first);
-    void mark_constraints();
+    bool holds_direction(Side s, Point2 p) const;
+    void check_copies();
+    Side side_at(VertexId v) const;
+    void folded_fault(VertexId named);
     void index();
     void index_hints();
 
     const MeshData& data_;
     Tin tin_;
     Errors errors_;
-    std::vector<std::uint8_t> corner_seen_;
+    std::vector<bool> bad_vertex_;           ///< whose coordinates are at fault
+    std::vector<std::uint32_t> first_side_;  ///< where a vertex's bucket begins in sides_
+    std::vector<Side> sides_;
+    std::vector<bool> corner_seen_;  ///< by the code of the side that starts there
+    std::vector<std::pair<VertexId, VertexId>> copies_;  ///< vertex, copy for a further fan
 };
 
 void TinBuilder::check_coordinates() {
@@ -71,25 +79,22 @@ void TinBuilder::check_coordinates() {
         fault(ErrorCode::MeshTooLarge, "more triangles or vertices than ids can count", {});
         return;
     }
+    bad_vertex_.assign(data_.vertices.size(), false);
     for (std::size_t v = 0; v < data_.vertices.size(); ++v) {
         const Point3& p = data_.vertices[v];
         for (const double value : {p.x, p.y, p.z}) {
+            if (std::isfinite(value) && in_coordinate_range(value)) continue;
+            bad_vertex_[v] = true;
             ErrorPlace place;
             place.vertex = v;
-            if (!std::isfinite(value)) {
-                fault(ErrorCode::CoordinateNotFinite,
-                      "vertex " + std::to_string(v) + " has a coordinate that is not finite",
-                      place);
-                break;
-            }
-            if (!in_coordinate_range(value)) {
+            const std::string which = "vertex " + std::to_string(v) + " has a coordinate ";
+            if (std::isfinite(value))
                 fault(ErrorCode::CoordinateOutOfRange,
-                      "vertex " + std::to_string(v) +
-                          " has a coordinate out of range: magnitudes " +
-                          "from 1e-60 to 1e15, and zero, are accepted",
+                      which + "out of range: zero and magnitudes from 1e-60 to 1e15 are accepted",
                       place);
-                break;
-            }
+            else
+                fault(ErrorCode::CoordinateNotFinite, which + "that is not finite", place);
+            break;
         }
     }
 }
@@ -104,7 +109,7 @@ void TinBuilder::check_triangles() {
                                std::to_string(vertices));
             continue;
         }
-        if (!errors_.empty() && errors_.front().code == ErrorCode::CoordinateNotFinite) continue;
+        if (bad_vertex_[a] || bad_vertex_[b] || bad_vertex_[c]) continue;
         switch (orientation(data_.vertices[a].plan(), data_.vertices[b].plan(),
                             data_.vertices[c].plan())) {
             case Orientation::CounterClockwise:
@@ -121,7 +126,39 @@ void TinBuilder::check_triangles() {
     }
 }
 
-/// Finds each side's twin through a chain of sides for each first vertex.
+/// Sides by their first vertex, in each of its buckets by their second: O(n log d) however many
+/// triangles share a vertex.
+void TinBuilder::sort_sides() {
+    const std::size_t count = data_.triangles.size();
+    first_side_.assign(data_.vertices.size() + 1, 0);
+    for (const auto& triangle : data_.triangles)
+        for (const std::uint32_t v : triangle)
+            ++first_side_[v + 1];
+    for (std::size_t v = 0; v < data_.vertices.size(); ++v)
+        first_side_[v + 1] += first_side_[v];
+    sides_.resize(3 * count);
+    std::vector<std::uint32_t> filled(first_side_.begin(), first_side_.end() - 1);
+    for (std::uint32_t t = 0; t < count; ++t)
+        for (unsigned i = 0; i < 3; ++i)
+            sides_[filled[data_.triangles[t][i]]++] = Side({t}, i);
+    const auto by_destination = [this](Side l, Side r) {
+        const VertexId a = tin_.destination(l), b = tin_.destination(r);
+        return a != b ? a < b : l < r;
+    };
+    for (std::size_t v = 0; v < data_.vertices.size(); ++v)
+        std::sort(sides_.begin() + first_side_[v], sides_.begin() + first_side_[v + 1],
+                  by_destination);
+}
+
+/// The first side from one vertex to another; invalid where there is none.
+Side TinBuilder::find_side(VertexId from, VertexId to) const {
+    const auto end = sides_.begin() + first_side_[from.index() + 1];
+    const auto found =
+        std::lower_bound(sides_.begin() + first_side_[from.index()], end, to,
+                         [this](Side s, VertexId v) { return tin_.destination(s) < v; });
+    return found != end && tin_.destination(*found) == to ? *found : Side{};
+}
+
 void TinBuilder::link() {
     const std::size_t count = data_.triangles.size();
     tin_.reserve_growth(data_.vertices.size(), count);
@@ -131,34 +168,44 @@ void TinBuilder::link() {
             {{VertexId{a}, VertexId{b}, VertexId{c}}, {}, {static_cast<std::uint32_t>(t)}, 0});
     }
     tin_.next_facet_ = static_cast<std::uint32_t>(count);
-
-    std::vector<Side> head(data_.vertices.size());
-    std::vector<Side> next(4 * count);
-    const auto find = [&](VertexId from, VertexId to) {
-        Side s = head[from.index()];
-        while (s.valid() && tin_.destination(s) != to)
-            s = next[s.code];
-        return s;
-    };
+    sort_sides();
     for (std::uint32_t t = 0; t < count; ++t) {
         for (unsigned i = 0; i < 3; ++i) {
             const Side side({t}, i);
             const VertexId from = tin_.origin(side);
             const VertexId to = tin_.destination(side);
-            if (find(from, to).valid()) {
-                triangle_fault(ErrorCode::EdgeNotManifold, t,
-                               "repeats the edge from vertex " + std::to_string(from.value) +
-                                   " to " + std::to_string(to.value) +
-                                   " of another triangle on the same side: they overlap");
+            if (find_side(from, to) == side) {
+                tin_.triangles_[t].twins[i] = find_side(to, from);
                 continue;
             }
-            next[side.code] = head[from.index()];
-            head[from.index()] = side;
-            const Side twin = find(to, from);
-            if (!twin.valid()) continue;
-            tin_.triangles_[t].twins[i] = twin;
-            tin_.triangles_[twin.triangle().index()].twins[twin.index()] = side;
+            triangle_fault(ErrorCode::EdgeNotManifold, t,
+                           "repeats the edge from vertex " + std::to_string(from.value) + " to " +
+                               std::to_string(to.value) +
+                               " of another triangle on the same side: they overlap");
         }
+    }
+    if (errors_.empty()) mark_constraints();
+    sides_ = {};
+    first_side_ = {};
+}
+
+void TinBuilder::mark_constraints() {
+    for (std::size_t i = 0; i < data_.constraints.size(); ++i) {
+        const auto [from, to] = data_.constraints[i];
+        Side side;
+        if (std::max(from, to) < data_.vertices.size()) {
+            side = find_side({from}, {to});
+            if (!side.valid()) side = find_side({to}, {from});
+        }
+        if (!side.valid()) {
+            fault(ErrorCode::VertexIndexOutOfRange,
+                  "constraint " + std::to_string(i) + " joins vertices " + std::to_string(from) +
+                      " and " + std::to_string(to) + ", which no edge of the mesh does",
+                  {});
+            continue;
+        }
+        for (const Side s : {side, tin_.twin(side)})
+            if (s.valid()) tin_.triangles_[s.triangle().index()].marks |= 1U << s.index();
     }
 }
 
@@ -166,88 +213,96 @@ void TinBuilder::collect_fans() {
     const std::size_t count = data_.vertices.size();
     for (const Point3& p : data_.vertices)
         tin_.vertices_.push_back({p.x, p.y, p.z, {}});
-    corner_seen_.assign(4 * tin_.triangles_.size(), 0);
+    corner_seen_.assign(4 * tin_.triangles_.size(), false);
     for (std::uint32_t t = 0; t < tin_.triangles_.size(); ++t)
         for (unsigned i = 0; i < 3; ++i)
-            if (corner_seen_[Side({t}, i).code] == 0) collect_fan({{t}, i});
+            if (!corner_seen_[Side({t}, i).code]) collect_fan({{t}, i});
     for (std::size_t v = 0; v < count; ++v)
         if (!tin_.vertices_[v].triangle.valid())
             vertex_fault(ErrorCode::VertexUnused, v, "is used by no triangle; leave it out");
     corner_seen_ = {};
+    check_copies();
 }
 
-/// Walks the triangles around the origin of `first` once, gives them their vertex, and counts how
-/// often they turn around it: once at most, or the mesh folds over itself there.
+/// Walks the triangles around the origin of `first` once and gives them their vertex: the one they
+/// name, or a copy of it where another fan has that one.
 void TinBuilder::collect_fan(Side first) {
-    VertexId v = tin_.origin(first);
-    if (tin_.vertex(v).triangle.valid()) {  // a second fan at the same position
-        const Tin::Vertex copy = tin_.vertex(v);
+    const VertexId named = tin_.origin(first);
+    VertexId v = named;
+    if (tin_.vertex(named).triangle.valid()) {
+        const Tin::Vertex copy = tin_.vertex(named);
         v = {static_cast<std::uint32_t>(tin_.vertices_.size())};
         tin_.vertices_.push_back({copy.x, copy.y, copy.z, {}});
+        copies_.emplace_back(named, v);
     }
     // Clockwise to the end of the fan, or once around.
     Side start = first;
     while (tin_.twin(start).valid() && tin_.twin(start).next() != first)
         start = tin_.twin(start).next();
-    const bool closed = tin_.twin(start).valid();
 
-    const Point2 centre = tin_.plan(v);
-    const auto is_upper = [centre](Point2 p) {
-        return p.y > centre.y || (p.y == centre.y && p.x > centre.x);
-    };
-    unsigned turns = 0;
+    // A fan that overlaps itself passes the direction in which it starts a second time.
+    const Point2 direction = tin_.plan(tin_.destination(start));
+    bool overlaps = false;
     Side s = start;
     do {
-        corner_seen_[s.code] = 1;
-        if (!is_upper(tin_.plan(tin_.destination(s))) && is_upper(tin_.plan(tin_.apex(s)))) ++turns;
+        corner_seen_[s.code] = true;
+        if (s != start && holds_direction(s, direction)) overlaps = true;
         tin_.triangles_[s.triangle().index()].vertices[s.index()] = v;
         s = tin_.twin(s.previous());
     } while (s.valid() && s != start);
     tin_.vertices_[v.index()].triangle = start.triangle();
-    if (turns > 1 || (closed && turns != 1)) {
-        ErrorPlace place;
-        place.vertex = tin_.origin(first).index();
-        place.position = centre;
-        fault(ErrorCode::VertexFolded,
-              "the triangles around the vertex overlap one another: a TIN has one elevation at "
-              "each position",
-              place);
+    if (overlaps) folded_fault(named);
+}
+
+/// Whether the ray from the side's origin through `p` runs in the side's triangle, its first edge
+/// included and its second not.
+bool TinBuilder::holds_direction(Side s, Point2 p) const {
+    const Point2 centre = tin_.plan(tin_.origin(s));
+    const Point2 right = tin_.plan(tin_.destination(s));
+    const Orientation turn = orientation(centre, right, p);
+    if (turn == Orientation::Collinear) return is_ahead(centre, right, p);
+    return turn == Orientation::CounterClockwise && is_left(centre, p, tin_.plan(tin_.apex(s)));
+}
+
+/// Fans that share a vertex overlap when one starts within the one before it, going round.
+void TinBuilder::check_copies() {
+    std::sort(copies_.begin(), copies_.end());
+    for (std::size_t i = 0; i < copies_.size();) {
+        const VertexId named = copies_[i].first;
+        const Point2 centre = tin_.plan(named);
+        std::vector<Side> fans{side_at(named)};
+        for (; i < copies_.size() && copies_[i].first == named; ++i)
+            fans.push_back(side_at(copies_[i].second));
+        const auto start_of = [this](Side s) { return tin_.plan(tin_.destination(s)); };
+        const auto is_upper = [centre](Point2 p) {
+            return p.y > centre.y || (p.y == centre.y && p.x > centre.x);
+        };
+        std::sort(fans.begin(), fans.end(), [&](Side l, Side r) {
+            const Point2 p = start_of(l), q = start_of(r);
+            if (is_upper(p) != is_upper(q)) return is_upper(p);
+            return is_left(centre, p, q);
+        });
+        for (std::size_t k = 0; k < fans.size(); ++k) {
+            const Point2 next = start_of(fans[(k + 1) % fans.size()]);
+            bool overlaps = false;
+            for (Side s = fans[k]; s.valid() && !overlaps; s = tin_.twin(s.previous()))
+                overlaps = holds_direction(s, next);
+            if (overlaps) folded_fault(named);
+        }
     }
 }
 
-void TinBuilder::mark_constraints() {
-    for (std::size_t i = 0; i < data_.constraints.size(); ++i) {
-        const auto [from, to] = data_.constraints[i];
-        bool found = false;
-        if (from < data_.vertices.size() && to < data_.vertices.size()) {
-            const TriangleId t = tin_.vertex({from}).triangle;
-            unsigned corner = 0;
-            while (tin_.triangle(t).vertices[corner].value != from)
-                ++corner;
-            const Side start(t, corner);
-            Side s = start;
-            do {  // the triangle stored is the clockwise end of the fan
-                for (const Side side : {s, s.previous()}) {
-                    const VertexId a = tin_.origin(side);
-                    const VertexId b = tin_.destination(side);
-                    if ((a.value != from || b.value != to) && (a.value != to || b.value != from))
-                        continue;
-                    found = true;
-                    tin_.triangles_[side.triangle().index()].marks |= 1U << side.index();
-                    const Side twin = tin_.twin(side);
-                    if (twin.valid())
-                        tin_.triangles_[twin.triangle().index()].marks |= 1U << twin.index();
-                }
-                s = tin_.twin(s.previous());
-            } while (!found && s.valid() && s != start);
-        }
-        if (!found) {
-            fault(ErrorCode::VertexIndexOutOfRange,
-                  "constraint " + std::to_string(i) + " joins vertices " + std::to_string(from) +
-                      " and " + std::to_string(to) + ", which no edge of the mesh does",
-                  {});
-        }
-    }
+/// The side that starts at v in v's own triangle.
+Side TinBuilder::side_at(VertexId v) const {
+    const TriangleId t = tin_.vertex(v).triangle;
+    const auto& vertices = tin_.triangle(t).vertices;
+    return {t, vertices[0] == v ? 0U : vertices[1] == v ? 1U : 2U};
+}
+
+void TinBuilder::folded_fault(VertexId named) {
+    vertex_fault(ErrorCode::VertexFolded, named.index(),
+                 "has triangles around it that overlap one another: a TIN has one elevation at "
+                 "each position");
 }
 
 void TinBuilder::index() {

@@ -14,8 +14,8 @@ Side side_from(const Tin& tin, TriangleId t, VertexId v);
 inline Side side_from(const Tin& tin, VertexId v) {
     return side_from(tin, tin.vertex(v).triangle, v);
 }
-/// The side from v to w, or from w to v where only that one exists; invalid where no edge joins
-/// them. Cost: the vertex's degree.
+/// A side of the edge that joins v and w, in either direction; invalid where none does.
+/// Cost: v's degree.
 Side find_edge(const Tin& tin, VertexId v, VertexId w);
 /// The boundary side that starts at v; invalid where v is inside the mesh.
 Side boundary_side_from(const Tin& tin, VertexId v);
