@@ -56,6 +56,18 @@ Session::Session(SessionFacts facts, core::Tin tin)
     refresh_view();
 }
 
+std::shared_ptr<Session> Session::fork(std::string id, std::string birth) const {
+    const auto lock = lock_to_read();
+    SessionFacts facts{std::move(id), std::move(birth), facts_.name, facts_.crs, facts_.unit};
+    auto copy = std::make_shared<Session>(std::move(facts), tin_);
+    copy->version_ = version_;
+    copy->next_polygon_ = next_polygon_;
+    copy->text_bytes_ = text_bytes_;
+    copy->polygons_ = polygons_;
+    copy->refresh_view();
+    return copy;
+}
+
 std::string Session::etag(std::uint64_t version) const {
     return '"' + facts_.birth + '-' + std::to_string(version) + '"';
 }

@@ -75,6 +75,10 @@ class Session {
   public:
     Session(SessionFacts facts, core::Tin tin);
 
+    /// A session of its own with all that this one has now: mesh, version, polygons and the ids to
+    /// come. Takes the readers' lock for the time of a copy.
+    std::shared_ptr<Session> fork(std::string id, std::string birth) const;
+
     const SessionFacts& facts() const { return facts_; }
     std::string etag(std::uint64_t version) const;
 

@@ -12,7 +12,14 @@ SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
                                       std::optional<std::string> id) {
     SessionFacts facts{id ? std::move(*id) : random_uuid(), random_hex(8), about.name, about.crs,
                        about.unit};
-    auto session = std::make_shared<Session>(std::move(facts), std::move(tin));
+    return keep(std::make_shared<Session>(std::move(facts), std::move(tin)));
+}
+
+SessionStore::Added SessionStore::fork(const Session& session) {
+    return keep(session.fork(random_uuid(), random_hex(8)));
+}
+
+SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
     const std::string& key = session->facts().id;
     const std::unique_lock lock(mutex_);
     if (sessions_.contains(key)) return StoreRefusal::IdIsTaken;

@@ -35,6 +35,9 @@ class SessionStore {
     /// Keeps a mesh as a new session. No id: a random one of 128 bits.
     Added add(core::Tin tin, const api::Terrain& about, std::optional<std::string> id = {});
 
+    /// Keeps a copy of a session as a new one with a random id.
+    Added fork(const Session& session);
+
     /// Null where there is none.
     std::shared_ptr<Session> find(const std::string& id) const;
 
@@ -55,6 +58,7 @@ class SessionStore {
     std::size_t memory_bytes() const;
 
   private:
+    Added keep(std::shared_ptr<Session> session);
     std::size_t sum_of_memory() const;
 
     const Limits limits_;

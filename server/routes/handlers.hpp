@@ -20,6 +20,7 @@ Response create_session(Services&, const Request&, const PathArguments&);
 Response put_session(Services&, const Request&, const PathArguments&);
 Response get_session(Services&, const Request&, const PathArguments&);
 Response delete_session(Services&, const Request&, const PathArguments&);
+Response fork_session(Services&, const Request&, const PathArguments&);
 
 // polygon_routes.cpp
 Response integrate_polygons(Services&, const Request&, const PathArguments&);

@@ -29,6 +29,7 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}", {}, to(get_session)},
         {"PUT", "/v1/sessions/{id}", {}, to(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
+        {"POST", "/v1/sessions/{id}/fork", {}, to(fork_session)},
         {"POST", "/v1/sessions/{id}/polygons", polygons, to(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},

@@ -46,6 +46,13 @@ Response refuse_session(const Request& request, const Limits& limits, StoreRefus
                       " is reached. DELETE sessions that are not needed.");
 }
 
+Response tell_created(const Session& session) {
+    const api::SessionView view = session.view();
+    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
+    response.with("ETag", session.etag(view.version));
+    return response;
+}
+
 /// Reads the terrain and keeps it. No id: a random one.
 Response make_session(Services& services, const Request& request, std::optional<std::string> id) {
     const auto format = require_terrain_format(request);
@@ -59,11 +66,7 @@ Response make_session(Services& services, const Request& request, std::optional<
     if (const auto* why = std::get_if<StoreRefusal>(&added)) {
         return refuse_session(request, services.limits, *why);
     }
-    const Session& session = *std::get<0>(added);
-    const api::SessionView view = session.view();
-    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
-    response.with("ETag", session.etag(view.version));
-    return response;
+    return tell_created(*std::get<0>(added));
 }
 
 }  // namespace
@@ -101,6 +104,20 @@ Response get_session(Services& services, const Request& request, const PathArgum
     Response response = ok(kJson, api::write_session(view));
     response.with("ETag", session.etag(view.version));
     return response;
+}
+
+Response fork_session(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    if (!request.body.empty()) {
+        return refuse(request, api::ProblemType::BadRequest,
+                      "A fork takes no body: it has what the session has now. Leave it out.");
+    }
+    const auto forked = services.sessions.fork(*std::get<0>(found));
+    if (const auto* why = std::get_if<StoreRefusal>(&forked)) {
+        return refuse_session(request, services.limits, *why);
+    }
+    return tell_created(*std::get<0>(forked));
 }
 
 Response delete_session(Services& services, const Request& request,

@@ -120,6 +120,28 @@ TEST_F(Handlers, MakeASessionUnderAnIdOfChoice) {
     EXPECT_EQ(ask("GET", "/v1/sessions/x").status, 404);
 }
 
+TEST_F(Handlers, ForkASessionThatThenGoesItsOwnWay) {
+    const std::string first = make_session();
+    ASSERT_EQ(post(first + "/polygons", kParcel).status, 200);
+    const Response forked = ask("POST", first + "/fork");
+    ASSERT_EQ(forked.status, 201) << forked.body;
+    const auto made = json::parse(forked.body);
+    const std::string second = "/v1/sessions/" + made["id"].get<std::string>();
+    EXPECT_EQ(header(forked, "Location"), second);
+    EXPECT_EQ(made["version"], 2);
+    EXPECT_EQ(made["polygons"], 1);
+    EXPECT_EQ(ask("GET", second + "/mesh.json").body, ask("GET", first + "/mesh.json").body);
+
+    const std::string before = ask("GET", first + "/mesh.json").body;
+    const Response edited = post(second + "/polygons", R"({"type":"Point","coordinates":[8,8.5]})");
+    ASSERT_EQ(edited.status, 200) << edited.body;
+    EXPECT_EQ(json::parse(edited.body)["polygons"][0]["id"], "p2") << "ids go on where they were";
+    EXPECT_EQ(ask("GET", first + "/mesh.json").body, before);
+    EXPECT_NE(ask("GET", second + "/mesh.json").body, before);
+    EXPECT_EQ(ask("POST", first + "/fork", {}, "{}").status, 400);
+    EXPECT_EQ(ask("POST", "/v1/sessions/none/fork").status, 404);
+}
+
 TEST_F(Handlers, RefuseTooManySessionsByName) {
     for (int i = 0; i < 3; ++i)
         make_session();
