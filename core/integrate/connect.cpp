@@ -46,6 +46,11 @@ bool March::connect(VertexId t) {
     return true;
 }
 
+/// Whether `connect` finds a first step towards t.
+bool March::has_way(VertexId t) {
+    return collect_corridor(t).has_value() || edge_on_way(along(tin_.plan(t))).valid();
+}
+
 /// Collects the edges between `at_` and t that a straight line crosses. Returns t when they can all
 /// be swapped away; the far end of the first edge when the line runs along it (and no corridor);
 /// otherwise a vertex to go through first, which the input segment touches to within

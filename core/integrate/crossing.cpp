@@ -38,7 +38,9 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     const VertexId a = tin_.origin(exit);
     const VertexId b = tin_.destination(exit);
     const double near = reach_of_rounding_ / 2.0;
-    if (const std::optional<VertexId> met = end_within(exit, near)) return connect(*met);
+    // Beyond edges to be swapped, rounding may have bent the outline into the straight way there.
+    const std::optional<VertexId> met = end_within(exit, near);
+    if (met && (!needs_swaps || has_way(*met))) return connect(*met);
     if (tin_.apex(exit) == at_ && can_absorb(exit, near)) return absorb(exit);
     if (is_near_edge(exit, end_, near) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
@@ -61,8 +63,8 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     }
     if (is_near_edge(exit, end_, reach_of_rounding_) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
-    if (const std::optional<VertexId> met = end_within(exit, reach_of_rounding_))
-        return connect(*met);
+    if (const std::optional<VertexId> end = end_within(exit, reach_of_rounding_))
+        return connect(*end);
     return fail(ErrorCode::NotRepresentable,
                 "no mesh of doubles holds this segment within rounding; move it, or give a snap "
                 "distance");

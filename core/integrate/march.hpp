@@ -93,6 +93,7 @@ class March {
 
     // connect.cpp
     bool connect(VertexId t);
+    bool has_way(VertexId t);
     std::optional<VertexId> collect_corridor(VertexId t);
     Side edge_on_way(double limit) const;
     bool clear_corridor(VertexId t);
