@@ -101,8 +101,8 @@ class March {
     // outside.cpp
     /// A place where the segment meets the boundary coming from outside.
     struct Entry {
-        double along;     ///< growing along the segment
-        VertexId vertex;  ///< met; or, when `edge` is valid, the first end of the edge crossed
+        double along = 0.0;  ///< growing along the segment
+        VertexId vertex;     ///< met; or, when `edge` is valid, the first end of the edge crossed
         Side edge;
         bool ends_here = false;  ///< the segment ends on the edge, to within rounding
     };

@@ -7,8 +7,13 @@ namespace tinsmith::core {
 
 namespace {
 
-constexpr auto next_of = Side::next_of;
-constexpr auto previous_of = Side::previous_of;
+unsigned next_of(unsigned i) {
+    return Side::next_of(i);
+}
+
+unsigned previous_of(unsigned i) {
+    return Side::previous_of(i);
+}
 
 /// The marks of side `from` alone, moved to side `to`.
 std::uint32_t side_marks(std::uint32_t marks, unsigned from, unsigned to) {

@@ -44,9 +44,9 @@ struct Bounds {
 class Tin {
   public:
     struct Vertex {
-        double x;
-        double y;
-        double z;
+        double x = 0.0;
+        double y = 0.0;
+        double z = 0.0;
         TriangleId triangle;  ///< any one triangle around the vertex
 
         Point2 plan() const { return {x, y}; }
@@ -57,7 +57,7 @@ class Tin {
         std::array<VertexId, 3> vertices;
         std::array<Side, 3> twins;
         FacetId facet;
-        std::uint32_t marks;  ///< bit i: side i is constrained; bit 4 + i: side i is locked
+        std::uint32_t marks = 0;  ///< bit i: side i is constrained; bit 4 + i: side i is locked
 
         friend bool operator==(const Triangle&, const Triangle&) = default;
     };

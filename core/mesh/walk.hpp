@@ -27,7 +27,7 @@ struct Departure {
         ThroughEdge,  ///< it crosses the triangle whose side across from the vertex is `side`
         Outside,      ///< it leaves the mesh at once
     };
-    Kind kind;
+    Kind kind = Kind::Outside;
     Side side;
 
     /// The other end of the edge, when AlongEdge.

@@ -46,7 +46,7 @@ inline Exact exact_product(double a, double b) {
 /// An exact sum of up to N doubles, kept as non-overlapping components of growing magnitude.
 /// The largest component has the sign of the whole.
 template <std::size_t N>
-class Expansion {
+class Expansion {  // NOLINT(cppcoreguidelines-pro-type-member-init): only `size_` parts are read
   public:
     /// Adds one double exactly. Cost: the number of components. Requires: fewer than N were added.
     void add(double x) {

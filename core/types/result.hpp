@@ -18,10 +18,13 @@ inline constexpr std::size_t kMaxFaults = 100;
 template <typename T>
 class [[nodiscard]] Result {
   public:
+    // Implicit, so that a function returns a value or an error as it is.
+    // NOLINTBEGIN(google-explicit-constructor)
     Result(T value) : state_(std::move(value)) {}
     Result(Error error) : state_(Errors{std::move(error)}) {}
     /// Requires: `errors` is not empty.
     Result(Errors errors) : state_(std::move(errors)) { assert(!this->errors().empty()); }
+    // NOLINTEND(google-explicit-constructor)
 
     bool ok() const { return std::holds_alternative<T>(state_); }
     explicit operator bool() const { return ok(); }
