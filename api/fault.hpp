@@ -39,7 +39,8 @@ enum class FaultKind {
 template <typename T>
 class [[nodiscard]] Parsed {
   public:
-    Parsed(T value) : state_(std::move(value)) {}
+    // Implicit, so that a reader returns what it read as it is.
+    Parsed(T value) : state_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
     Parsed(FaultKind kind, Fault fault) : state_(Refusal{kind, {}}) {
         std::get<Refusal>(state_).faults.push_back(std::move(fault));
     }
@@ -66,7 +67,7 @@ class [[nodiscard]] Parsed {
 
   private:
     struct Refusal {
-        FaultKind kind;
+        FaultKind kind = FaultKind::Invalid;
         Faults faults;
     };
     std::variant<T, Refusal> state_;

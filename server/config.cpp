@@ -104,14 +104,14 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     add_setting(*serve, "threads", http.threads, "Connections served at the same time")
         ->check(CLI::Range(2, 1024));
     add_limits(*serve, http.limits);
-    static const std::map<std::string, LogLevel> levels{{"debug", LogLevel::Debug},
-                                                        {"info", LogLevel::Info},
-                                                        {"warning", LogLevel::Warning},
-                                                        {"error", LogLevel::Error},
-                                                        {"off", LogLevel::Off}};
+    static const std::map<std::string, LogLevel> kLevels{{"debug", LogLevel::Debug},
+                                                         {"info", LogLevel::Info},
+                                                         {"warning", LogLevel::Warning},
+                                                         {"error", LogLevel::Error},
+                                                         {"off", LogLevel::Off}};
     serve->add_option("--log-level", config.log_level, "debug, info, warning, error or off")
         ->envname("TINSMITH_LOG_LEVEL")
-        ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case));
+        ->transform(CLI::CheckedTransformer(kLevels, CLI::ignore_case));
     return serve;
 }
 

@@ -19,7 +19,7 @@ struct Limits {
 
 /// Shape of a request before its body is read; see `check_request`.
 inline constexpr std::size_t kMaxPathBytes = 512;
-inline constexpr std::size_t kMaxHeaders = 100;
+inline constexpr std::size_t kMaxHeaders = 90;
 inline constexpr std::size_t kMaxQueryParameters = 64;
 
 }  // namespace tinsmith::server

@@ -12,14 +12,14 @@ namespace {
 
 /// Made on first use and never taken down: threads may log until the process ends.
 spdlog::logger& logger() {
-    static const auto instance = [] {
+    static const auto kInstance = [] {
         auto made = std::make_shared<spdlog::logger>(
             "tinsmith", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
         made->set_pattern("%Y-%m-%dT%H:%M:%S.%e%z %^%l%$ %v");
         made->flush_on(spdlog::level::info);
         return made;
     }();
-    return *instance;
+    return *kInstance;
 }
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {

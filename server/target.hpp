@@ -18,7 +18,7 @@ struct Target {
 
 /// Nothing where an escape is broken, a decoded byte is a control character, or the path does not
 /// start with "/". Cost: linear.
-std::optional<Target> parse_target(std::string_view target);
+std::optional<Target> parse_target(std::string_view text);
 
 /// "%41b" as "Ab"; "+" means a space in queries only. Nothing where an escape is broken.
 std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);

@@ -192,7 +192,7 @@ std::optional<GeometryType> geometry_type(std::string_view name) {
 }
 
 std::string coordinate_pointer(const RequestedShape& shape, std::size_t path, std::size_t point) {
-    const std::string base = pointer_to(shape.pointer, "coordinates");
+    std::string base = pointer_to(shape.pointer, "coordinates");
     switch (shape.type) {
         case GeometryType::Point:
             return base;

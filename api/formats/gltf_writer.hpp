@@ -48,6 +48,6 @@ struct GlbScene {
 /// KHR_draco_mesh_compression is named as used and required exactly when a primitive needs it.
 /// The same scene gives the same bytes. Fails only beyond the 4 GiB of a GLB.
 /// Cost: the buffers are copied three times.
-std::variant<std::string, EncodeError> write_glb_file(const GlbScene& scene);
+std::variant<std::string, EncodeError> write_glb_file(const GlbScene& from);
 
 }  // namespace tinsmith::api

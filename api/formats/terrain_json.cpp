@@ -15,7 +15,6 @@ namespace tinsmith::api {
 namespace {
 
 using json::Container;
-using json::Member;
 using json::Object;
 using json::Reader;
 using json::Scalar;

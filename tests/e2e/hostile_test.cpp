@@ -101,10 +101,15 @@ TEST_F(Hostile, Invitations) {
 }
 
 TEST_F(Hostile, Headers) {
-    std::string many;
-    for (int i = 0; i < 200; ++i)
-        many += "X-" + std::to_string(i) + ": y\r\n";
-    expect_refused(get(many), 431);
+    const auto headers = [](int count) {
+        std::string many;
+        for (int i = 0; i < count; ++i)
+            many += "X-" + std::to_string(i) + ": y\r\n";
+        return many;
+    };
+    expect_refused(get(headers(95)), 431);
+    // Newer releases of the HTTP library refuse a hundred by themselves, as malformed.
+    expect_refused(get(headers(200)), kLibraryLimitsHeads ? 400 : 431);
     expect_refused(get("Range: bytes=0-1,2-3\r\n"), 416);
     expect_refused(get("REMOTE_ADDR: 10.0.0.1\r\n"), 400);
     expect_refused(get("Host: y\r\n"), 400);
