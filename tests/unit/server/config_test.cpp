@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace tinsmith::server {
 namespace {
@@ -37,7 +38,8 @@ ServeConfig serve(std::vector<const char*> arguments) {
 class TemporaryFile {
   public:
     explicit TemporaryFile(const std::string& content)
-        : path_(testing::TempDir() + "tinsmith_config_test.toml") {
+        : path_(testing::TempDir() + "tinsmith_config_test." + std::to_string(::getpid()) +
+                ".toml") {
         std::ofstream(path_) << content;
     }
     ~TemporaryFile() { std::filesystem::remove(path_); }
