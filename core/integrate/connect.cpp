@@ -29,12 +29,11 @@ bool March::connect(VertexId t) {
         if (!next)
             return fail(ErrorCode::NotRepresentable,
                         "rounding leaves no way to this segment within the promised distance; "
-                        "move it, or give a snap distance");
+                        "move it a little");
         if (*next != target && !corridor_.empty()) {
             if (std::find(targets.begin(), targets.end(), *next) != targets.end() || *next == at_)
                 return fail(ErrorCode::NotRepresentable,
-                            "rounding leads the segment in a circle; move it, or give a snap "
-                            "distance");
+                            "rounding leads the segment in a circle; move it a little");
             targets.push_back(*next);
             continue;
         }
@@ -144,7 +143,9 @@ bool March::clear_corridor(VertexId t) {
                 waiting_.emplace_back(c, d);
         }
         if (!swapped || --rounds == 0)
-            return fail(ErrorCode::StepBudget, "swaps did not clear the way within their budget");
+            return fail(ErrorCode::StepBudget,
+                        "a defect of the program, not of the request: swaps did not clear the way "
+                        "within their budget; nothing was changed; report it with the request");
         corridor_.swap(waiting_);
     }
     return true;

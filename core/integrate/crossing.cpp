@@ -66,8 +66,7 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     if (const std::optional<VertexId> end = end_within(exit, reach_of_rounding_))
         return connect(*end);
     return fail(ErrorCode::NotRepresentable,
-                "no mesh of doubles holds this segment within rounding; move it, or give a snap "
-                "distance");
+                "no mesh of doubles holds this segment within rounding; move it a little");
 }
 
 /// The input segment's point on the edge, or a neighbour of it, that leaves all triangles strictly

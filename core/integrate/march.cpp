@@ -177,7 +177,9 @@ bool March::reach(VertexId t, bool needs_swaps) {
 bool March::within_budget() {
     // A straight way meets each triangle once; the rest is room for what rounding repeats.
     if (++steps_ > 4 * tin_.triangle_count() + 1024)
-        return fail(ErrorCode::StepBudget, "the march did not end within its budget of steps");
+        return fail(ErrorCode::StepBudget,
+                    "a defect of the program, not of the request: the march did not end within its "
+                    "budget of steps; nothing was changed; report it with the request");
     return within_limits();
 }
 
