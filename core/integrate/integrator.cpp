@@ -269,15 +269,12 @@ Errors leaving_errors(const Report& report) {
 
 }  // namespace
 
-Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const IntegrateOptions& options) {
+Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const IntegrateOptions& options,
+                         Undo* undo) {
     if (Errors errors = check_shapes(shapes); !errors.empty()) return errors;
     Report report;
     Stopwatch watch(options.clock_ms);
-    std::vector<UndoRecord> done;
-    const auto take_back = [&] {
-        for (auto record = done.rbegin(); record != done.rend(); ++record)
-            Surgery::undo(tin, *record);
-    };
+    Undo done;
     bool met_mesh = false;
     // The budgets are the request's: each shape leaves the rest of them to the next.
     MarchLimits limits{options.max_crossings, options.max_new_triangles, &options.cancelled};
@@ -288,7 +285,7 @@ Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const Integrat
             Error error = *integration.march().error();
             error.place.shape = s;
             surgery.roll_back();
-            take_back();
+            take_back(tin, done);
             return error;
         }
         const MarchTally& tally = integration.march().tally();
@@ -302,15 +299,21 @@ Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const Integrat
     const bool leaves = std::any_of(report.shapes.begin(), report.shapes.end(),
                                     [](const ShapeReport& r) { return !r.outside.empty(); });
     if (!met_mesh && !encloses_mesh(tin, shapes)) {
-        take_back();
+        take_back(tin, done);
         return outside_error(tin, shapes);
     }
     if (leaves && options.outside == Outside::Reject) {
-        take_back();
+        take_back(tin, done);
         return leaving_errors(report);
     }
+    if (undo != nullptr) *undo = std::move(done);
     watch.lap(report.time_ms.integrate);
     return report;
+}
+
+void take_back(Tin& tin, const Undo& undo) {
+    for (auto record = undo.rbegin(); record != undo.rend(); ++record)
+        Surgery::undo(tin, *record);
 }
 
 }  // namespace tinsmith::core

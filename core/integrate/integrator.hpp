@@ -1,39 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <span>
 
+#include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
 #include "core/mesh/tin.hpp"
+#include "core/mesh/undo_record.hpp"
 #include "core/types/result.hpp"
 
 namespace tinsmith::core {
 
-enum class Improve {
-    None,    ///< leave what the march made
-    Strict,  ///< swap within facets only: best triangles, surface unmoved
-};
+/// Integrates all shapes, in order, or none of them (guarantees G1-G8 in tests/support). Where
+/// `undo` is given it takes what `take_back` needs.
+/// Errors: coordinates out of range; nothing of the request meets the mesh; parts outside where
+/// they are to be rejected; no mesh of doubles that holds a segment; budgets; cancelled.
+/// Cost: linear in crossings and input vertices, and in what is swapped.
+Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const IntegrateOptions& options,
+                         Undo* undo = nullptr);
 
-enum class Outside {
-    Skip,    ///< integrate what meets the mesh, list the rest
-    Reject,  ///< refuse the request if any part is outside
-};
-
-struct IntegrateOptions {
-    Improve improve = Improve::Strict;
-    Outside outside = Outside::Skip;
-    std::uint64_t max_crossings = UINT64_MAX;
-    std::uint64_t max_new_triangles = UINT64_MAX;
-    /// Asked now and then; true stops the work and leaves the mesh as it was.
-    std::function<bool()> cancelled;
-    /// Milliseconds from any fixed start; for the report alone, never in a decision.
-    std::function<double()> clock_ms;
-};
-
-/// Integrates all shapes, in order, or none of them (guarantees G1-G6, G8).
-Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const IntegrateOptions& options);
+/// Takes a committed operation back, bit for bit, in time proportional to what it changed.
+/// Requires: it is the newest on this mesh that was not taken back.
+void take_back(Tin& tin, const Undo& undo);
 
 }  // namespace tinsmith::core

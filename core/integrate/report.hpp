@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/types/ids.hpp"
 #include "core/types/point.hpp"
 
 namespace tinsmith::core {
@@ -12,6 +13,14 @@ namespace tinsmith::core {
 struct OutsidePart {
     std::size_t path = 0;        ///< index into the shape's paths
     std::vector<Point2> points;  ///< from where the path leaves the mesh to where it comes back
+};
+
+/// A stretch of an input path as it lies in the mesh: consecutive vertices are joined by
+/// constrained edges, as they were when the operation ended. Later operations may split those;
+/// `Tin::constraint_splits` says where. A closed path wholly on the mesh ends at its first vertex.
+struct Chain {
+    std::size_t path = 0;  ///< index into the shape's paths
+    std::vector<VertexId> vertices;
 };
 
 /// Smallest angles (3D, degrees) of the triangles an operation touched.
@@ -30,8 +39,10 @@ struct ShapeReport {
     std::uint64_t triangles_added = 0;
     std::uint64_t edges_swapped = 0;
     std::vector<OutsidePart> outside;
+    std::vector<Chain> chains;            ///< what the mesh holds of the shape
     double max_vertical_deviation = 0.0;  ///< certified bound, see `integrate`
     double max_plan_deviation = 0.0;      ///< chain vertices to their input segment, measured
+    double max_elevation_change = 0.0;    ///< by elevations that the paths brought, measured
     AngleSummary smallest_angle_deg;
 };
 

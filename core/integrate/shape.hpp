@@ -12,6 +12,8 @@ namespace tinsmith::core {
 struct Path {
     std::vector<Point2> points;
     bool closed = false;
+    /// The points' own elevations, one each, linear between them; none: draped on the surface.
+    std::vector<double> elevations = {};
 };
 
 /// One thing to integrate: a polygon with holes, a multi-line, a set of points.

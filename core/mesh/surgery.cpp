@@ -29,7 +29,9 @@ void set_side_marks(std::uint32_t& marks, unsigned side, std::uint32_t moved) {
 Surgery::Surgery(Tin& tin) : tin_(tin) {
     record_.vertex_count = tin.vertices_.size();
     record_.triangle_count = tin.triangles_.size();
+    record_.split_count = tin.constraint_splits_.size();
     record_.next_facet = tin.next_facet_;
+    record_.bounds = tin.bounds_;
 }
 
 Surgery::~Surgery() {
@@ -128,6 +130,7 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     const Side outer_bc = T.twins[i1];
 
     const VertexId p = append(point, t);
+    if ((marks >> i & 1U) != 0) tin_.constraint_splits_.push_back({a, b, p});
     T.vertices[i1] = p;
     set_side_marks(T.marks, i1, 0);
     const TriangleId N =
@@ -223,6 +226,8 @@ void Surgery::absorb_apex(Side s) {
     const std::uint32_t marks = tin_.triangle(t).marks;
     const FacetId facet = tin_.facet(u);
 
+    if (tin_.is_constrained(s))
+        tin_.constraint_splits_.push_back({tin_.origin(s), tin_.destination(s), tin_.apex(s)});
     swap_edge(s);  // T (a, d, c): c -> a is side i + 2; U (b, c, d): b -> c is side j
     edit(t).facet = facet;
     const auto add_marks = [this, marks, i](Side side) {
@@ -274,7 +279,9 @@ void Surgery::undo(Tin& tin, const UndoRecord& record) {
         tin.triangles_[id.index()] = old;
     for (auto entry = record.vertices.rbegin(); entry != record.vertices.rend(); ++entry)
         tin.vertices_[entry->first.index()] = entry->second;
+    tin.constraint_splits_.resize(record.split_count);
     tin.next_facet_ = record.next_facet;
+    tin.bounds_ = record.bounds;
 }
 
 }  // namespace tinsmith::core

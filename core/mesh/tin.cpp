@@ -6,7 +6,8 @@
 namespace tinsmith::core {
 
 Tin::Tin(const Tin& other)
-    : next_facet_(other.next_facet_),
+    : constraint_splits_(other.constraint_splits_),
+      next_facet_(other.next_facet_),
       bounds_(other.bounds_),
       boundary_(other.boundary_),
       hints_(other.hints_),
@@ -61,7 +62,7 @@ MeshData Tin::to_data() const {
 
 std::size_t Tin::memory_bytes() const {
     return vertices_.size() * sizeof(Vertex) + triangles_.size() * sizeof(Triangle) +
-           hints_.size() * sizeof(TriangleId);
+           hints_.size() * sizeof(TriangleId) + constraint_splits_.size() * sizeof(ConstraintSplit);
 }
 
 }  // namespace tinsmith::core

@@ -18,6 +18,13 @@ struct Bounds {
     Point3 max;
 };
 
+/// A constrained edge a-b that became a-p-b.
+struct ConstraintSplit {
+    VertexId a;
+    VertexId b;
+    VertexId p;
+};
+
 /// A 2.5D triangulation: one elevation for each plan position of its domain, which may be
 /// concave, have holes, and consist of several components.
 ///
@@ -102,6 +109,10 @@ class Tin {
     /// A triangle somewhere near the position, to start a walk at. Cost: O(1).
     TriangleId hint(Point2 p) const;
 
+    /// All constrained edges that were split since the mesh was built, oldest first: what leads
+    /// from a chain as it was integrated to the edges that make it up now.
+    const std::vector<ConstraintSplit>& constraint_splits() const { return constraint_splits_; }
+
     /// Plain copies of vertices, triangles and constrained edges, in slot order. Cost: linear.
     MeshData to_data() const;
 
@@ -124,6 +135,7 @@ class Tin {
 
     std::vector<Vertex> vertices_;
     std::vector<Triangle> triangles_;
+    std::vector<ConstraintSplit> constraint_splits_;
     std::uint32_t next_facet_ = 0;
     Bounds bounds_;
     BoundaryIndex boundary_;

@@ -56,7 +56,8 @@ TEST(WriteSessionList, IsAnObjectWithAList) {
 TEST(WriteReport, HasTheAgreedShape) {
     core::Report report;
     report.shapes.resize(2);
-    report.shapes[0] = {91, 2550, 2640, 5280, 900, {}, 0.0, 0.125, {31.25, 0.5, 35.0, 2.0}};
+    report.shapes[0] = {
+        91, 2550, 2640, 5280, 900, {}, {}, 0.0, 0.125, 0.0, {31.25, 0.5, 35.0, 2.0}};
     report.shapes[1].segments = 1;
     report.shapes[1].outside.push_back({2, {{1.5, 2}, {3, 4}}});
     report.time_ms = {0.25, 0.5, 0.75};
