@@ -253,6 +253,10 @@ bool Surgery::is_fresh(Side s) const {
     return ((tin_.triangle(s.triangle()).marks >> (s.index() + kFreshShift)) & 1U) != 0;
 }
 
+void Surgery::give_fresh_facet(TriangleId t) {
+    edit(t).facet = {tin_.next_facet_++};
+}
+
 void Surgery::log_boundary(VertexId v, VertexId next) {
     tin_.boundary_.add(v, tin_.plan(v), tin_.plan(next), &record_.boundary_cells);
 }

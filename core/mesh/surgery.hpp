@@ -39,6 +39,10 @@ class Surgery {
     /// True where the constraint was made by this operation and not before.
     bool is_fresh(Side s) const;
 
+    /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie in
+    /// one plane with a neighbour.
+    void give_fresh_facet(TriangleId t);
+
     /// Keeps the changes; what is returned can take them back (`undo`).
     UndoRecord commit();
     /// Takes all changes back, bit for bit.
