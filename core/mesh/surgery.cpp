@@ -249,6 +249,12 @@ void Surgery::mark_constrained(Side s) {
     mark(tin_.twin(s));
 }
 
+void Surgery::set_locked(Side s, bool locked) {
+    if (tin_.is_locked(s) == locked) return;
+    for (const Side side : {s, tin_.twin(s)})
+        if (side.valid()) edit(side.triangle()).marks ^= 1U << (side.index() + 4);
+}
+
 bool Surgery::is_fresh(Side s) const {
     return ((tin_.triangle(s.triangle()).marks >> (s.index() + kFreshShift)) & 1U) != 0;
 }

@@ -36,6 +36,8 @@ class Surgery {
 
     /// Marks the edge on both sides as a constraint, and as fresh when it was none before.
     void mark_constrained(Side s);
+    /// Locks or unlocks the edge, on both sides.
+    void set_locked(Side s, bool locked);
     /// True where the constraint was made by this operation and not before.
     bool is_fresh(Side s) const;
 
