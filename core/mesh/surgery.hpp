@@ -38,11 +38,14 @@ class Surgery {
     void mark_constrained(Side s);
     /// Locks or unlocks the edge, on both sides.
     void set_locked(Side s, bool locked);
+    /// Locks the edge, or unlocks it, on both sides: a locked edge is never swapped; it may be
+    /// split, and then both halves are locked.
+    void set_locked(Side s, bool locked);
     /// True where the constraint was made by this operation and not before.
     bool is_fresh(Side s) const;
 
-    /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie in
-    /// one plane with a neighbour.
+    /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie
+    /// in one plane with a neighbour.
     void give_fresh_facet(TriangleId t);
 
     /// Keeps the changes; what is returned can take them back (`undo`).
