@@ -255,18 +255,6 @@ void Surgery::set_locked(Side s, bool locked) {
         if (side.valid()) edit(side.triangle()).marks ^= 1U << (side.index() + 4);
 }
 
-void Surgery::set_locked(Side s, bool locked) {
-    if (tin_.is_locked(s) == locked) return;
-    const auto mark = [this, locked](Side side) {
-        if (!side.valid()) return;
-        const std::uint32_t bit = 1U << (side.index() + 4);
-        std::uint32_t& marks = edit(side.triangle()).marks;
-        marks = locked ? marks | bit : marks & ~bit;
-    };
-    mark(s);
-    mark(tin_.twin(s));
-}
-
 bool Surgery::is_fresh(Side s) const {
     return ((tin_.triangle(s.triangle()).marks >> (s.index() + kFreshShift)) & 1U) != 0;
 }

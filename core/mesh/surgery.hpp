@@ -36,8 +36,6 @@ class Surgery {
 
     /// Marks the edge on both sides as a constraint, and as fresh when it was none before.
     void mark_constrained(Side s);
-    /// Locks or unlocks the edge, on both sides.
-    void set_locked(Side s, bool locked);
     /// Locks the edge, or unlocks it, on both sides: a locked edge is never swapped; it may be
     /// split, and then both halves are locked.
     void set_locked(Side s, bool locked);
