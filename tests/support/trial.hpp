@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mesh/tin.hpp"
+#include "tests/support/case_file.hpp"
+
+namespace tinsmith::test {
+
+/// What is let pass, in meshes whose detail is some ulps wide.
+struct Leniency {
+    bool unrepresentable = false;  ///< a request may be refused because no mesh of doubles holds it
+    std::size_t forced = 0;        ///< vertices at one place beyond those that G8 counts
+};
+
+/// What came of one request.
+struct Verdict {
+    std::vector<std::string> broken;  ///< guarantees, in words; the first word names which
+    bool refused = false;
+    bool unrepresentable = false;  ///< refused for that, and let pass
+
+    /// The word that two failures of one kind share: "G2", "STEP_BUDGET"; empty for none.
+    std::string kind() const;
+};
+
+/// A mesh that takes requests, all guarantees checked after each.
+class Trial {
+  public:
+    /// Empty with `broken()` set where the mesh is refused.
+    Trial(const core::MeshData& mesh, Leniency leniency);
+
+    const std::vector<std::string>& broken() const { return broken_; }
+    core::MeshData mesh() const { return tin_->to_data(); }
+    Verdict apply(const Request& request);
+
+  private:
+    std::optional<core::Tin> tin_;
+    Leniency leniency_;
+    std::size_t applied_ = 0;  ///< requests that were not refused
+    std::vector<std::string> broken_;
+};
+
+/// The first verdict of the case's requests that is not good, else the last.
+Verdict replay(const Case& replayed, Leniency leniency);
+
+}  // namespace tinsmith::test
