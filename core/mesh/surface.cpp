@@ -50,7 +50,15 @@ double steepest_slope(Point3 a, Point3 b, Point3 c) {
     return std::sqrt(nx * nx + ny * ny) / area;
 }
 
-double smallest_angle_measure(Point3 a, Point3 b, Point3 c) {
+namespace {
+
+struct SquaredSizes {
+    double doubled_area;
+    double shortest, middle, longest;  ///< edges
+};
+
+/// The same values whatever the order of the corners.
+SquaredSizes squared_sizes(Point3 a, Point3 b, Point3 c) {
     const auto squared = [](const Point3& p, const Point3& q) {
         const double dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
         return dx * dx + dy * dy + dz * dz;
@@ -69,11 +77,25 @@ double smallest_angle_measure(Point3 a, Point3 b, Point3 c) {
     const double ny = uz * vx - ux * vz;
     const double nz = ux * vy - uy * vx;
     double first = squared(a, b), second = squared(b, c), third = squared(c, a);
-    // The smallest angle lies between the two longest sides.
     if (first > third) std::swap(first, third);
     if (first > second) std::swap(first, second);
-    const double product = second * third;
-    return product > 0.0 ? (nx * nx + ny * ny + nz * nz) / product : 0.0;
+    if (second > third) std::swap(second, third);
+    return {nx * nx + ny * ny + nz * nz, first, second, third};
+}
+
+}  // namespace
+
+double smallest_angle_measure(Point3 a, Point3 b, Point3 c) {
+    const SquaredSizes squared = squared_sizes(a, b, c);
+    // The smallest angle lies between the two longest edges.
+    const double product = squared.middle * squared.longest;
+    return product > 0.0 ? squared.doubled_area / product : 0.0;
+}
+
+double aspect_measure(Point3 a, Point3 b, Point3 c) {
+    const SquaredSizes squared = squared_sizes(a, b, c);
+    const double product = squared.longest * squared.longest;
+    return product > 0.0 ? squared.doubled_area / product : 0.0;
 }
 
 double angle_degrees(double measure) {

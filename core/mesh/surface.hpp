@@ -23,4 +23,8 @@ double smallest_angle_measure(Point3 a, Point3 b, Point3 c);
 /// The angle of a measure, in degrees.
 double angle_degrees(double measure);
 
+/// Square of the triangle's shortest height by its longest edge, in 3D: the same value whatever the
+/// order of the corners, growing with the triangle's quality from 0 to 3/4 (equilateral).
+double aspect_measure(Point3 a, Point3 b, Point3 c);
+
 }  // namespace tinsmith::core

@@ -259,8 +259,8 @@ bool Surgery::is_fresh(Side s) const {
     return ((tin_.triangle(s.triangle()).marks >> (s.index() + kFreshShift)) & 1U) != 0;
 }
 
-void Surgery::give_fresh_facet(TriangleId t) {
-    edit(t).facet = {tin_.next_facet_++};
+FacetId Surgery::give_fresh_facet(TriangleId t) {
+    return edit(t).facet = {tin_.next_facet_++};
 }
 
 void Surgery::log_boundary(VertexId v, VertexId next) {

@@ -44,7 +44,7 @@ class Surgery {
 
     /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie
     /// in one plane with a neighbour.
-    void give_fresh_facet(TriangleId t);
+    FacetId give_fresh_facet(TriangleId t);
 
     /// Keeps the changes; what is returned can take them back (`undo`).
     UndoRecord commit();
