@@ -157,29 +157,6 @@ class ShapeIntegration {
     Improver improver_;
 };
 
-/// One vertex of each component of the mesh. Cost: linear.
-std::vector<VertexId> component_vertices(const Tin& tin) {
-    std::vector<VertexId> found;
-    std::vector<bool> seen(tin.triangle_count(), false);
-    std::vector<TriangleId> pending;
-    for (std::uint32_t first = 0; first < tin.triangle_count(); ++first) {
-        if (seen[first]) continue;
-        found.push_back(tin.triangle({first}).vertices[0]);
-        seen[first] = true;
-        pending.push_back({first});
-        while (!pending.empty()) {
-            const TriangleId t = pending.back();
-            pending.pop_back();
-            for (const Side twin : tin.triangle(t).twins) {
-                if (!twin.valid() || seen[twin.triangle().index()]) continue;
-                seen[twin.triangle().index()] = true;
-                pending.push_back(twin.triangle());
-            }
-        }
-    }
-    return found;
-}
-
 /// Whether the position lies inside the shape's closed paths, by even-odd.
 bool encloses(const Shape& shape, Point2 p) {
     bool inside = false;
@@ -198,10 +175,11 @@ bool encloses(const Shape& shape, Point2 p) {
 /// Whether any of the mesh lies inside the shapes. Requires: no path meets the mesh, so that each
 /// component is inside or outside as a whole.
 bool encloses_mesh(const Tin& tin, std::span<const Shape> shapes) {
-    const std::vector<VertexId> vertices = component_vertices(tin);
+    const std::vector<TriangleId>& components = tin.components();
     return std::any_of(shapes.begin(), shapes.end(), [&](const Shape& shape) {
-        return std::any_of(vertices.begin(), vertices.end(),
-                           [&](VertexId v) { return encloses(shape, tin.plan(v)); });
+        return std::any_of(components.begin(), components.end(), [&](TriangleId t) {
+            return encloses(shape, tin.plan(tin.triangle(t).vertices[0]));
+        });
     });
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/mesh/components.hpp"
 #include "core/predicates/orientation.hpp"
 #include "core/types/range.hpp"
 
@@ -323,6 +324,7 @@ void TinBuilder::index() {
         const VertexId v = tin_.origin(s);
         tin_.boundary_.add(v, tin_.plan(v), tin_.plan(tin_.destination(s)));
     }
+    tin_.components_ = find_components(tin_);
     index_hints();
 }
 

@@ -10,6 +10,7 @@ Tin::Tin(const Tin& other)
       next_facet_(other.next_facet_),
       bounds_(other.bounds_),
       boundary_(other.boundary_),
+      components_(other.components_),
       hints_(other.hints_),
       hint_columns_(other.hint_columns_) {
     reserve_growth(other.vertices_.size(), other.triangles_.size());

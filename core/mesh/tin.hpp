@@ -106,6 +106,9 @@ class Tin {
     const Bounds& bounds() const { return bounds_; }
 
     const BoundaryIndex& boundary() const { return boundary_; }
+    /// One triangle of each component, in order of slot. No operation joins or parts components,
+    /// and none takes a triangle's slot to another, so they are what they were when it was built.
+    const std::vector<TriangleId>& components() const { return components_; }
     /// A triangle somewhere near the position, to start a walk at. Cost: O(1).
     TriangleId hint(Point2 p) const;
 
@@ -139,6 +142,7 @@ class Tin {
     std::uint32_t next_facet_ = 0;
     Bounds bounds_;
     BoundaryIndex boundary_;
+    std::vector<TriangleId> components_;
     std::vector<TriangleId> hints_;  ///< square grid over the bounds, row by row
     std::size_t hint_columns_ = 0;
 };

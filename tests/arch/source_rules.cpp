@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t kMostLines = 400;
 
 /// A folder may include itself and what stands before it.
-constexpr std::array<std::string_view, 7> kOrder = {
-    "core/types", "core/predicates", "core/mesh", "core/integrate", "core/edit", "api", "server"};
+constexpr std::array<std::string_view, 8> kOrder = {
+    "core/types",   "core/predicates", "core/mesh", "core/integrate",
+    "core/regions", "core/edit",       "api",       "server"};
 
 /// What core may take from the standard library: no input or output, no clock, no chance, no
 /// thread.
