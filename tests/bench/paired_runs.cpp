@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/paired_runs.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+#include <time.h>
+
+#include "core/integrate/integrator.hpp"
+#include "core/mesh/build.hpp"
+#include "tests/cgal/bundled_data.hpp"
+
+namespace tinsmith::bench {
+
+namespace {
+
+core::Tin built(const core::MeshData& mesh) {
+    auto tin = core::build_tin(mesh);
+    if (!tin) throw std::runtime_error("the mesh is refused: " + tin.errors()[0].detail);
+    return std::move(*tin);
+}
+
+core::ShapeReport integrated(core::Tin& tin, const core::Shape& shape,
+                             const core::IntegrateOptions& options, double& ms,
+                             core::StageTimes& stages) {
+    const double start = now_ms();
+    const auto report = core::integrate(tin, {&shape, 1}, options);
+    ms = now_ms() - start;
+    if (!report) throw std::runtime_error("the shape is refused: " + report.errors()[0].detail);
+    stages = report->time_ms;
+    return report->shapes[0];
+}
+
+double timed_insert(cgal::Peer& peer, const std::vector<cgal::Polyline>& paths) {
+    const double start = now_ms();
+    peer.insert(paths);
+    return now_ms() - start;
+}
+
+/// "0.41 (0.38-0.44)": the median of the pairs' ratios and the middle half of them.
+std::string ratio(const std::vector<double>& one, const std::vector<double>& other) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < one.size(); ++i)
+        ratios.push_back(one[i] / other[i]);
+    std::ranges::sort(ratios);
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f (%.2f-%.2f)", median(ratios), ratios[ratios.size() / 4],
+                  ratios[ratios.size() * 3 / 4]);
+    return text;
+}
+
+std::string times(const std::vector<double>& values) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.3f (%.3f)", median(values), least(values));
+    return text;
+}
+
+}  // namespace
+
+double now_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+}
+
+double least(const std::vector<double>& values) {
+    return *std::ranges::min_element(values);
+}
+
+Bases::Bases(const core::MeshData& mesh)
+    : tin(built(mesh)),
+      points(cgal::Peer::of_points(mesh)),
+      triangles(cgal::Peer::of_triangles(mesh)) {}
+
+PairedRuns run_paired(const Bases& bases, const core::Shape& shape, int runs) {
+    const std::vector<cgal::Polyline> paths = cgal::drape(bases.tin, shape);
+    PairedRuns result;
+    for (int run = 0; run <= runs; ++run) {
+        core::IntegrateOptions options;
+        core::StageTimes stages;
+        double ms = 0.0;
+        if (run == 0) options.clock_ms = now_ms;
+        {
+            core::Tin tin = bases.tin;
+            const core::ShapeReport report = integrated(tin, shape, options, ms, stages);
+            result.crossings = report.crossings;
+            result.added = report.vertices_added;
+        }
+        if (run == 0) {  // the first run warms up; only its stages are kept
+            result.locate_ms = stages.locate;
+            result.integrate_ms = stages.integrate;
+            result.improve_ms = stages.improve;
+            continue;
+        }
+        result.ours.push_back(ms);
+        {
+            cgal::Peer peer = bases.points;
+            result.points.push_back(timed_insert(peer, paths));
+            result.added_points = peer.vertex_count() - bases.points.vertex_count();
+        }
+        cgal::Peer peer = bases.triangles;
+        result.triangles.push_back(timed_insert(peer, paths));
+        result.added_triangles = peer.vertex_count() - bases.triangles.vertex_count();
+    }
+    return result;
+}
+
+void print_heading() {
+    std::printf(
+        "Milliseconds are medians (minima in brackets), ratios medians of paired runs (middle half "
+        "in brackets).\n\n"
+        "| mesh | polygon | segments | crossings | new vertices | b's | Tinsmith ms | a ms | b ms "
+        "| Tinsmith ns/vertex | b ns/vertex | Tinsmith / a | Tinsmith / b |\n"
+        "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+}
+
+void print_row(const std::string& mesh, const std::string& polygon, std::size_t segments,
+               const PairedRuns& runs) {
+    const auto each = [](double ms, std::uint64_t count) {
+        return ms * 1e6 / static_cast<double>(count);
+    };
+    std::printf(
+        "| %s | %s | %zu | %llu | %llu | %llu | %s | %s | %s | %.0f | %.0f | %s | %s |\n",
+        mesh.c_str(), polygon.c_str(), segments, static_cast<unsigned long long>(runs.crossings),
+        static_cast<unsigned long long>(runs.added),
+        static_cast<unsigned long long>(runs.added_triangles), times(runs.ours).c_str(),
+        times(runs.points).c_str(), times(runs.triangles).c_str(),
+        each(median(runs.ours), runs.added), each(median(runs.triangles), runs.added_triangles),
+        ratio(runs.ours, runs.points).c_str(), ratio(runs.ours, runs.triangles).c_str());
+    std::fflush(stdout);
+}
+
+}  // namespace tinsmith::bench
