@@ -23,7 +23,7 @@ bool March::connect(VertexId t) {
         }
         const std::optional<VertexId> next = collect_corridor(target);
         if (const Side edge = next ? Side{} : edge_on_way(along(tin_.plan(target))); edge.valid()) {
-            follow_edge(edge);
+            step_along(edge, far_end(edge));
             continue;
         }
         if (!next)
@@ -38,9 +38,7 @@ bool March::connect(VertexId t) {
             continue;
         }
         if (!clear_corridor(*next)) return false;
-        surgery_.mark_constrained(find_edge(tin_, *next, at_));
-        measure(tin_.plan(*next));
-        at_ = *next;
+        step_along(find_edge(tin_, *next, at_), *next);
     }
     return true;
 }
@@ -65,7 +63,7 @@ std::optional<VertexId> March::collect_corridor(VertexId t) {
     while (true) {
         corridor_.emplace_back(tin_.origin(exit), tin_.destination(exit));
         if (tin_.is_fixed(exit) || tin_.separates_facets(exit))
-            return end_within(exit, reach_of_rounding_);
+            return end_within(exit, std::max(near_, reach_of_rounding_));
         const Side entry = tin_.twin(exit);
         const VertexId apex = tin_.apex(entry);
         if (apex == t) return t;
@@ -92,23 +90,17 @@ Side March::edge_on_way(double limit) const {
         const Point2 p = tin_.plan(end);
         const double there = along(p);
         if (there <= here || there > limit || (best.valid() && there >= best_along)) return;
-        if (!is_near_segment(p, reach_of_rounding_ / 2.0)) return;
+        if (!is_near_segment(p, near_)) return;
         best = edge;
         best_along = there;
     };
-    const Side start = side_from(tin_, at_);
-    Side s = start;
-    do {  // counter-clockwise
-        offer(s, tin_.destination(s));
-        offer(s.previous(), tin_.apex(s));
-        s = tin_.twin(s.previous());
-    } while (s.valid() && s != start);
-    if (s.valid()) return best;
-    for (s = tin_.twin(start); s.valid(); s = tin_.twin(s)) {
-        s = s.next();
-        offer(s, tin_.destination(s));
-    }
+    for_each_side_at(tin_, at_, [&](Side edge) { offer(edge, far_end(edge)); });
     return best;
+}
+
+/// The other end of an edge at the vertex where the march stands.
+VertexId March::far_end(Side edge) const {
+    return tin_.origin(edge) == at_ ? tin_.destination(edge) : tin_.origin(edge);
 }
 
 /// Swaps all edges of the corridor away, so that at_ and t are joined. An edge whose two triangles

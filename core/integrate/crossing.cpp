@@ -37,12 +37,12 @@ double distance_to_segment(Point2 p, Point2 a, Point2 b) {
 bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     const VertexId a = tin_.origin(exit);
     const VertexId b = tin_.destination(exit);
-    const double near = reach_of_rounding_ / 2.0;
+    const double rounding = reach_of_rounding_ / 2.0;
     // Beyond edges to be swapped, rounding may have bent the outline into the straight way there.
-    const std::optional<VertexId> met = end_within(exit, near);
+    const std::optional<VertexId> met = end_within(exit, near_);
     if (met && (!needs_swaps || has_way(*met))) return connect(*met);
-    if (tin_.apex(exit) == at_ && can_absorb(exit, near)) return absorb(exit);
-    if (is_near_edge(exit, end_, near) && can_split(exit, end_))
+    if (tin_.apex(exit) == at_ && can_absorb(exit, rounding)) return absorb(exit);
+    if (is_near_edge(exit, end_, rounding) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
     if (const std::optional<Point2> p = find_split(exit)) {
         count_crossing(exit);
@@ -94,8 +94,12 @@ std::optional<Point2> March::find_split(Side edge) const {
 Point2 March::intersection(Side edge) const {
     Point2 a = tin_.plan(tin_.origin(edge));
     Point2 b = tin_.plan(tin_.destination(edge));
-    const Point2 low = is_before(start_, end_) ? start_ : end_;
-    const Point2 high = is_before(start_, end_) ? end_ : start_;
+    Point2 low = start_, high = end_;
+    // From a snapped vertex the way may cross an edge that the segment itself just misses.
+    if (options_.snap > 0.0 && at_.valid() &&
+        orientation(start_, end_, a) == orientation(start_, end_, b))
+        low = tin_.plan(at_);
+    if (is_before(high, low)) std::swap(low, high);
     const AreaEstimate estimate_a = estimate_doubled_area(low, high, a);
     const AreaEstimate estimate_b = estimate_doubled_area(low, high, b);
     double to_a = std::fabs(estimate_a.value);
@@ -177,6 +181,12 @@ std::optional<VertexId> March::end_within(Side edge, double distance) const {
         nearest = v;
     }
     return nearest;
+}
+
+/// Whether the way goes through the vertex, though it is inside a facet.
+bool March::is_ahead_within_snap(VertexId v) const {
+    const Point2 p = tin_.plan(v);
+    return is_near_segment(p, options_.snap) && along(p) > along(tin_.plan(at_));
 }
 
 /// Whether p is within the distance of the input segment. Filtered like `is_near_edge`.

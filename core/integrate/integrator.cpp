@@ -68,7 +68,7 @@ class ShapeIntegration {
           options_(options),
           watch_(watch),
           times_(times),
-          march_(surgery, limits),
+          march_(surgery, options, limits),
           improver_(surgery) {}
 
     /// False: see `march().error()`.
@@ -95,6 +95,7 @@ class ShapeIntegration {
         report.triangles_added = tin.triangle_count() - record.triangle_count;
         report.edges_swapped = tally.edges_swapped + improver_.edges_swapped();
         report.outside = tally.outside;
+        report.chains = tally.chains;
         report.max_plan_deviation = tally.max_plan_deviation;
         const Measurement measured = measure_operation(tin, record);
         report.smallest_angle_deg = measured.smallest_angle_deg;
@@ -105,14 +106,14 @@ class ShapeIntegration {
 
   private:
     bool run(std::size_t index, const Path& path) {
-        if (!march_.begin(index, path.points.front())) return false;
+        if (!march_.begin(index, path)) return false;
         watch_.lap(times_.locate);
         Point2 last = path.points.front();
         const std::size_t count = path.points.size();
         for (std::size_t i = 1; i < count + (path.closed ? 1 : 0); ++i) {
             const Point2 next = path.points[i % count];
             if (next == last) continue;
-            if (!march_.advance(next)) {
+            if (!march_.advance(i % count)) {
                 march_.error()->place.point = i - 1;
                 return false;
             }

@@ -12,19 +12,28 @@ namespace tinsmith::core {
 
 using enum Orientation;
 
-March::March(Surgery& surgery, const MarchLimits& limits)
-    : surgery_(surgery), tin_(surgery.tin()), limits_(limits) {
+March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits)
+    : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits) {
     const Bounds& box = tin_.bounds();
     const double largest = std::max(
         {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
     reach_of_rounding_ = 4.0 * ulp(largest);
+    near_ = std::max(options.snap, reach_of_rounding_ / 2.0);
 }
 
-bool March::begin(std::size_t path, Point2 start) {
-    path_ = path;
-    end_ = start;
+bool March::begin(std::size_t index, const Path& path) {
+    path_ = &path;
+    path_index_ = index;
+    from_ = to_ = 0;
+    const Point2 start = path.points.front();
+    start_ = end_ = start;
     outside_.clear();
-    Location location = locate(tin_, start, tin_.hint(start));
+    const std::size_t triangles = tin_.triangle_count();
+    const TriangleId seed =
+        options_.walk_seed == 0
+            ? tin_.hint(start)
+            : TriangleId{static_cast<std::uint32_t>(options_.walk_seed % triangles)};
+    Location location = locate(tin_, start, seed);
     if (location.kind == Location::Kind::Outside) location = locate_on_boundary(start);
     if (location.kind == Location::Kind::Outside) {
         at_ = {};
@@ -32,15 +41,18 @@ bool March::begin(std::size_t path, Point2 start) {
         return within_limits();
     }
     tally_.met_mesh = true;
-    at_ = place(location, start);
+    tally_.chains.push_back({path_index_, {}});
+    stand_on(settle(location, start));
     return within_limits();
 }
 
-bool March::advance(Point2 end) {
+bool March::advance(std::size_t to) {
+    from_ = to_;
+    to_ = to;
     start_ = end_;
-    end_ = end;
-    length_ = std::sqrt((end.x - start_.x) * (end.x - start_.x) +
-                        (end.y - start_.y) * (end.y - start_.y));
+    end_ = path_->points[to];
+    length_ = std::sqrt((end_.x - start_.x) * (end_.x - start_.x) +
+                        (end_.y - start_.y) * (end_.y - start_.y));
     steps_ = 0;
     boundary_visits_.clear();
     entries_known_ = false;
@@ -48,8 +60,11 @@ bool March::advance(Point2 end) {
     ++tally_.segments;
     if (!within_budget()) return false;
     while (true) {
-        if (!at_.valid() && !enter()) return !error_;
-        if (tin_.plan(at_) == end_) return true;
+        if (!at_.valid() && !enter()) return !error_ && is_as_promised();
+        if (has_arrived()) {
+            log_elevation(1.0);
+            return is_as_promised();
+        }
         if (!within_budget()) return false;
         const Departure departure = leave(tin_, at_, end_, side_from(tin_, at_));
         switch (departure.kind) {
@@ -61,12 +76,21 @@ bool March::advance(Point2 end) {
                 break;
             case Departure::Kind::Outside:
                 if (const Side edge = edge_on_way(along(end_)); edge.valid())
-                    follow_edge(edge);
+                    step_along(edge, far_end(edge));
                 else
                     leave_mesh();
                 break;
         }
     }
+}
+
+/// The end of the segment is where the march stands, or within snap of it.
+bool March::has_arrived() const {
+    const Point2 p = tin_.plan(at_);
+    if (p == end_) return true;
+    if (!(options_.snap > 0.0)) return false;
+    return (p.x - end_.x) * (p.x - end_.x) + (p.y - end_.y) * (p.y - end_.y) <=
+           options_.snap * options_.snap;
 }
 
 bool March::finish() {
@@ -75,52 +99,15 @@ bool March::finish() {
     return within_limits();
 }
 
-/// Makes a position that was located a vertex, on the facet's plane or edge. One that is on an edge
-/// to within rounding goes onto the edge: no needle is left between them.
-VertexId March::place(Location location, Point2 p) {
-    VertexId v = location.vertex;
-    if (location.kind == Location::Kind::InTriangle) {
-        for (unsigned i = 0; i < 3; ++i) {
-            const Side side(location.side.triangle(), i);
-            if (is_near_edge(side, p, reach_of_rounding_ / 2.0) && can_split(side, p))
-                location = {Location::Kind::OnEdge, side, {}};
-        }
-    }
-    switch (location.kind) {
-        case Location::Kind::InTriangle: {
-            const TriangleId t = location.side.triangle();
-            v = surgery_.split_triangle(t, {p.x, p.y, elevation_in(tin_, t, p)});
-            break;
-        }
-        case Location::Kind::OnEdge:
-            v = surgery_.split_edge(location.side,
-                                    {p.x, p.y, elevation_on(tin_, location.side, p)});
-            break;
-        case Location::Kind::OnVertex:
-        case Location::Kind::Outside:
-            return v;
-    }
-    changed_.push_back(v);
-    return v;
-}
-
 /// Goes along an edge to its far end, or to the segment's end where that comes first.
 bool March::follow(const Departure& departure) {
     const VertexId next = departure.along(tin_, at_);
     if (tin_.plan(next) != end_ && is_ahead(tin_.plan(next), tin_.plan(at_), end_)) {
         // The end lies on the line through both ends and before the far one: on the edge.
-        const VertexId end = place({Location::Kind::OnEdge, departure.side, {}}, end_);
-        return reach(end, false);
+        return reach(settle({Location::Kind::OnEdge, departure.side, {}}, end_), false);
     }
-    follow_edge(departure.side);
+    step_along(departure.side, next);
     return true;
-}
-
-/// Goes along an edge from where the march stands to its other end.
-void March::follow_edge(Side edge) {
-    surgery_.mark_constrained(edge);
-    at_ = tin_.origin(edge) == at_ ? tin_.destination(edge) : tin_.origin(edge);
-    measure(tin_.plan(at_));
 }
 
 /// Goes through triangles, from the one in front of `at_` whose far side is `exit`, up to the first
@@ -138,9 +125,9 @@ bool March::cross(Side exit) {
         const Point2 left = tin_.plan(tin_.destination(exit));
         switch (orientation(right, left, end_)) {
             case CounterClockwise:
-                return reach(place({Location::Kind::InTriangle, exit, {}}, end_), needs_swaps);
+                return reach(settle({Location::Kind::InTriangle, exit, {}}, end_), needs_swaps);
             case Collinear:
-                return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
+                return reach(settle({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
             case Clockwise:
                 break;
         }
@@ -150,10 +137,12 @@ bool March::cross(Side exit) {
         needs_swaps = true;
         const Side entry = tin_.twin(exit);
         const VertexId apex = tin_.apex(entry);
+        if (options_.snap > 0.0 && is_ahead_within_snap(apex) && has_way(apex))
+            return connect(apex);
         switch (orientation(tin_.plan(at_), end_, tin_.plan(apex))) {
             case Collinear:
                 if (tin_.plan(apex) != end_ && is_ahead(tin_.plan(apex), tin_.plan(at_), end_))
-                    return reach(place({Location::Kind::InTriangle, entry, {}}, end_), true);
+                    return reach(settle({Location::Kind::InTriangle, entry, {}}, end_), true);
                 return reach(apex, true);
             case CounterClockwise:
                 exit = entry.next();
@@ -167,11 +156,18 @@ bool March::cross(Side exit) {
 
 /// Stands on t next, with the edge to it constrained; swaps first where edges are in the way.
 bool March::reach(VertexId t, bool needs_swaps) {
-    if (needs_swaps) return connect(t);
-    surgery_.mark_constrained(find_edge(tin_, t, at_));
-    measure(tin_.plan(t));
-    at_ = t;
+    const Side edge = needs_swaps ? Side{} : find_edge(tin_, t, at_);
+    if (!edge.valid()) return connect(t);
+    step_along(edge, t);
     return true;
+}
+
+/// What was measured holds the promise on the chain's distance from the input.
+bool March::is_as_promised() {
+    if (tally_.max_plan_deviation <= std::max(options_.snap, reach_of_rounding_)) return true;
+    return fail(ErrorCode::NotRepresentable,
+                "no mesh of doubles was found that holds this segment within the promised "
+                "distance; move it a little");
 }
 
 bool March::within_budget() {
@@ -199,7 +195,7 @@ bool March::within_limits() {
 
 bool March::fail(ErrorCode code, const char* detail) {
     ErrorPlace place;
-    place.path = path_;
+    place.path = path_index_;
     place.position = at_.valid() ? tin_.plan(at_) : start_;
     error_ = Error{code, detail, place};
     return false;

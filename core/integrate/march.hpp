@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
 #include "core/mesh/surgery.hpp"
@@ -25,6 +26,13 @@ struct MarchTally {
     double max_plan_deviation = 0.0;
     bool met_mesh = false;
     std::vector<OutsidePart> outside;
+    std::vector<Chain> chains;
+};
+
+/// An elevation that a path brings to a vertex of its chain.
+struct OwnElevation {
+    VertexId vertex;
+    double z;
 };
 
 /// Bounds on a march, and how to ask for its end.
@@ -44,20 +52,23 @@ struct MarchLimits {
 ///
 /// Laws, after each segment:
 ///   1. the mesh is valid (laws 1-5 of `Tin`);
-///   2. every vertex of the chain is within `reach_of_rounding` of the input segment;
+///   2. every vertex of the chain is within the larger of snap and `reach_of_rounding` of the input
+///      segment, however often the way was snapped;
 ///   3. no triangle changed that the segment does not meet, but for swaps inside their facets.
 /// Where no mesh of doubles can do that, the march stops with NotRepresentable; the caller rolls
 /// back. It ends: each step is nearer to the segment's end, and a budget on steps stands behind
 /// that for the cases in which rounding decides.
 class March {
   public:
-    March(Surgery& surgery, const MarchLimits& limits);
+    March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits);
 
-    /// Begins a path at its first point. Costs a location. False: stopped, see `error`.
-    bool begin(std::size_t path, Point2 start);
-    /// Integrates the segment from where the march stands to `end`. Requires: begin was called, and
-    /// end differs from the position before. False: stopped, see `error`.
-    bool advance(Point2 end);
+    /// Begins a path at its first point; `index` is the path's in its shape. The path must live
+    /// until `finish`. Costs a location. False: stopped, see `error`.
+    bool begin(std::size_t index, const Path& path);
+    /// Integrates the segment from where the march stands to the path's point `to`. Requires: begin
+    /// was called, and the point's position differs from the one before. False: stopped, see
+    /// `error`.
+    bool advance(std::size_t to);
     /// Ends the path: closes what runs outside. False: stopped, see `error`.
     bool finish();
 
@@ -66,17 +77,32 @@ class March {
     std::optional<Error>& error() { return error_; }
     /// Vertices whose surroundings changed since the last call; the march forgets them.
     std::vector<VertexId>& changed() { return changed_; }
+    /// Elevations that the paths bring, in order; the mesh has those of its surface until they are
+    /// set.
+    const std::vector<OwnElevation>& own_elevations() const { return own_elevations_; }
 
   private:
     // march.cpp
-    VertexId place(Location location, Point2 p);
+    bool has_arrived() const;
+    bool is_as_promised();
     bool follow(const Departure& departure);
-    void follow_edge(Side edge);
     bool cross(Side exit);
     bool reach(VertexId t, bool needs_swaps);
     bool within_budget();
     bool within_limits();
     bool fail(ErrorCode code, const char* detail);
+
+    // stand.cpp
+    VertexId settle(const Location& location, Point2 p);
+    std::optional<VertexId> vertex_within_snap(const Location& location, Point2 p) const;
+    std::optional<std::pair<Side, Point2>> edge_within_snap(const Location& location,
+                                                            Point2 p) const;
+    VertexId place(Location location, Point2 p);
+    void stand_on(VertexId v);
+    void step_along(Side edge, VertexId next);
+    void log_elevation(double share);
+    double share_along(Point2 p) const;
+    bool is_on_older_constraint(VertexId v) const;
 
     // crossing.cpp
     bool cross_facet_edge(Side exit, bool needs_swaps);
@@ -88,6 +114,7 @@ class March {
     bool can_absorb(Side edge, double distance) const;
     bool absorb(Side edge);
     std::optional<VertexId> end_within(Side edge, double distance) const;
+    bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
     void measure(Point2 p);
 
@@ -96,6 +123,7 @@ class March {
     bool has_way(VertexId t);
     std::optional<VertexId> collect_corridor(VertexId t);
     Side edge_on_way(double limit) const;
+    VertexId far_end(Side edge) const;
     bool clear_corridor(VertexId t);
 
     // outside.cpp
@@ -119,12 +147,19 @@ class March {
 
     Surgery& surgery_;
     const Tin& tin_;
+    const IntegrateOptions& options_;
     const MarchLimits& limits_;
     double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
+    double near_;               ///< what is nearer is one: half of that, or the snap
     MarchTally tally_;
     std::optional<Error> error_;
     std::vector<VertexId> changed_;
+    std::vector<OwnElevation> own_elevations_;
 
+    const Path* path_ = nullptr;
+    std::size_t path_index_ = 0;
+    std::size_t from_ = 0;  ///< the input segment's points in the path
+    std::size_t to_ = 0;
     VertexId at_;   ///< where the march stands; invalid: outside the mesh
     Point2 start_;  ///< the input segment
     Point2 end_;
@@ -134,7 +169,6 @@ class March {
     static constexpr unsigned kMaxAbsorbed = 8;
     VertexId absorbed_at_;  ///< where the march last absorbed needles, and how many there
     unsigned absorbed_ = 0;
-    std::size_t path_ = 0;
     std::vector<Point2> outside_;            ///< the stretch outside that is being walked
     std::vector<VertexId> boundary_visits_;  ///< where this segment met the boundary
     double farthest_visit_ = 0.0;            ///< the last of them along the segment

@@ -116,9 +116,9 @@ bool March::enter_by(const Entry& entry) {
     VertexId v = entry.vertex;
     if (entry.edge.valid()) {
         const bool ends_here = entry.ends_here;
-        std::optional<VertexId> met = end_within(entry.edge, reach_of_rounding_ / 2.0);
+        std::optional<VertexId> met = end_within(entry.edge, near_);
         const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
-        if (!met && !p) met = end_within(entry.edge, reach_of_rounding_);
+        if (!met && !p) met = end_within(entry.edge, std::max(near_, reach_of_rounding_));
         if (met && !ends_here) {
             // Back at a vertex that the segment left: this edge brings nothing new.
             if (contains(boundary_visits_, *met)) {
@@ -134,12 +134,12 @@ bool March::enter_by(const Entry& entry) {
                         "no mesh of doubles holds this segment where it enters the mesh; move it");
         }
     }
-    measure(tin_.plan(v));
     visit_boundary(v);
     tally_.met_mesh = true;
     outside_.push_back(tin_.plan(v));
     close_outside();
-    at_ = v;
+    tally_.chains.push_back({path_index_, {}});
+    stand_on(v);
     return true;
 }
 
@@ -161,7 +161,7 @@ void March::close_outside() {
     const bool has_length =
         outside_.size() == 1 || std::any_of(outside_.begin(), outside_.end(),
                                             [this](Point2 p) { return p != outside_.front(); });
-    if (has_length) tally_.outside.push_back({path_, outside_});
+    if (has_length) tally_.outside.push_back({path_index_, outside_});
     outside_.clear();
 }
 

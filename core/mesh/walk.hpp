@@ -20,6 +20,26 @@ Side find_edge(const Tin& tin, VertexId v, VertexId w);
 /// The boundary side that starts at v; invalid where v is inside the mesh.
 Side boundary_side_from(const Tin& tin, VertexId v);
 
+/// Calls `visit` once with a side of each edge at v, in the same order each time. Whether the side
+/// starts or ends at v depends on the boundary. Cost: v's degree.
+template <typename Visit>
+void for_each_side_at(const Tin& tin, VertexId v, Visit visit) {
+    const Side start = side_from(tin, v);
+    Side last;
+    Side s = start;
+    do {  // counter-clockwise; beyond each triangle its side that ends at v
+        visit(s);
+        last = s.previous();
+        s = tin.twin(last);
+    } while (s.valid() && s != start);
+    if (s.valid()) return;
+    visit(last);
+    for (s = tin.twin(start); s.valid(); s = tin.twin(s)) {  // clockwise
+        s = s.next();
+        visit(s);
+    }
+}
+
 /// The first thing that a straight line meets on leaving a vertex.
 struct Departure {
     enum class Kind : std::uint8_t {

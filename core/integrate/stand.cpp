@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the march stands: making points vertices, and keeping the chain that it leaves behind.
+#include <algorithm>
+#include <cmath>
+
+#include "core/integrate/march.hpp"
+#include "core/mesh/surface.hpp"
+
+namespace tinsmith::core {
+
+namespace {
+
+double squared_distance(Point2 p, Point2 q) {
+    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+}
+
+/// The point of the segment a-b that is nearest to p, to within rounding.
+Point2 nearest_on(Point2 a, Point2 b, Point2 p) {
+    const double dx = b.x - a.x, dy = b.y - a.y;
+    const double share =
+        std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+    return {a.x + dx * share, a.y + dy * share};
+}
+
+}  // namespace
+
+/// Makes an input position, located in a triangle or on an edge, a vertex; or takes the vertex or
+/// the place on an edge between facets that is within snap of it.
+VertexId March::settle(const Location& location, Point2 p) {
+    if (options_.snap > 0.0 && location.kind != Location::Kind::OnVertex) {
+        if (const auto vertex = vertex_within_snap(location, p)) return *vertex;
+        if (const auto found = edge_within_snap(location, p))
+            return place({Location::Kind::OnEdge, found->first, {}}, found->second);
+    }
+    return place(location, p);
+}
+
+/// The nearest corner of the triangles that the location is in.
+std::optional<VertexId> March::vertex_within_snap(const Location& location, Point2 p) const {
+    std::optional<VertexId> nearest;
+    double least = options_.snap * options_.snap;
+    for (const Side side : {location.side, tin_.twin(location.side)}) {
+        if (!side.valid()) continue;
+        for (const VertexId v : tin_.triangle(side.triangle()).vertices) {
+            const double distance = squared_distance(tin_.plan(v), p);
+            if (distance > least || (nearest && distance == least && *nearest < v)) continue;
+            nearest = v;
+            least = distance;
+        }
+    }
+    return nearest;
+}
+
+/// The nearest side of the location's triangle that is part of the surface's shape, and the place
+/// on it. Sides inside a facet are no reason to move a point.
+std::optional<std::pair<Side, Point2>> March::edge_within_snap(const Location& location,
+                                                               Point2 p) const {
+    if (location.kind != Location::Kind::InTriangle) return {};
+    std::optional<std::pair<Side, Point2>> nearest;
+    double least = options_.snap * options_.snap;
+    for (unsigned i = 0; i < 3; ++i) {
+        const Side side(location.side.triangle(), i);
+        if (!tin_.is_fixed(side) && !tin_.separates_facets(side)) continue;
+        const Point2 q =
+            nearest_on(tin_.plan(tin_.origin(side)), tin_.plan(tin_.destination(side)), p);
+        const double distance = squared_distance(p, q);
+        if (distance > least || !can_split(side, q)) continue;
+        nearest.emplace(side, q);
+        least = distance;
+    }
+    return nearest;
+}
+
+/// Makes a position that was located a vertex, on the facet's plane or edge. One that is on an edge
+/// to within rounding goes onto the edge: no needle is left between them.
+VertexId March::place(Location location, Point2 p) {
+    VertexId v = location.vertex;
+    if (location.kind == Location::Kind::InTriangle) {
+        for (unsigned i = 0; i < 3; ++i) {
+            const Side side(location.side.triangle(), i);
+            if (is_near_edge(side, p, reach_of_rounding_ / 2.0) && can_split(side, p))
+                location = {Location::Kind::OnEdge, side, {}};
+        }
+    }
+    switch (location.kind) {
+        case Location::Kind::InTriangle: {
+            const TriangleId t = location.side.triangle();
+            v = surgery_.split_triangle(t, {p.x, p.y, elevation_in(tin_, t, p)});
+            break;
+        }
+        case Location::Kind::OnEdge:
+            v = surgery_.split_edge(location.side,
+                                    {p.x, p.y, elevation_on(tin_, location.side, p)});
+            break;
+        case Location::Kind::OnVertex:
+        case Location::Kind::Outside:
+            return v;
+    }
+    changed_.push_back(v);
+    return v;
+}
+
+/// Stands on a vertex, which is the chain's next.
+void March::stand_on(VertexId v) {
+    at_ = v;
+    tally_.chains.back().vertices.push_back(v);
+    measure(tin_.plan(v));
+    log_elevation(share_along(tin_.plan(v)));
+}
+
+/// Goes along an edge from where the march stands to its other end, and constrains it.
+void March::step_along(Side edge, VertexId next) {
+    surgery_.mark_constrained(edge);
+    if (options_.lock) surgery_.set_locked(edge, true);
+    stand_on(next);
+}
+
+/// How far along the input segment the position is, from 0 to 1.
+double March::share_along(Point2 p) const {
+    if (p == start_) return 0.0;
+    if (p == end_) return 1.0;
+    return std::clamp(along(p) / (length_ * length_), 0.0, 1.0);
+}
+
+/// Notes the elevation that the path has where the march stands: linear along the input segment,
+/// counted from its nearer end so that rounding shrinks towards both.
+void March::log_elevation(double share) {
+    if (path_->elevations.empty()) return;
+    if (options_.on_crossing == OnCrossing::Old && is_on_older_constraint(at_)) return;
+    const double from = path_->elevations[from_];
+    const double to = path_->elevations[to_];
+    const double z = share > 0.5 ? to + (from - to) * (1.0 - share) : from + (to - from) * share;
+    own_elevations_.push_back({at_, z});
+}
+
+/// Whether the vertex is on a constraint that the shape did not bring.
+bool March::is_on_older_constraint(VertexId v) const {
+    bool found = false;
+    for_each_side_at(tin_, v, [&](Side side) {
+        found = found || (tin_.is_constrained(side) && !surgery_.is_fresh(side));
+    });
+    return found;
+}
+
+}  // namespace tinsmith::core
