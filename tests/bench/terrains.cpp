@@ -103,7 +103,7 @@ class Raster {
 
 /// Displaces the middles of ever shorter stretches of a closed line of `count` values.
 std::vector<double> midpoint_displacement(std::size_t count) {
-    constexpr double kRoughness = 0.9;
+    constexpr double kRoughness = 0.75;
     std::vector<double> values(count + 1, 0.0);
     std::mt19937_64 random(2);
     std::vector<std::pair<std::size_t, std::size_t>> pending{{0, count}};
