@@ -20,6 +20,7 @@ struct Fault {
     std::string pointer;  ///< JSON Pointer (RFC 6901) into the body; empty: the body as a whole
     std::optional<std::array<double, 2>> coordinate = std::nullopt;  ///< plan position, if any
     std::optional<std::uint64_t> index = std::nullopt;  ///< of a vertex or triangle, if any
+    std::string parameter = {};  ///< of the query or command line, where that is at fault
 };
 
 /// All faults of one input in the order they were met; never more than `kMaxFaults`.

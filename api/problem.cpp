@@ -76,6 +76,7 @@ ProblemType type_of_error(core::ErrorCode code) {
 nlohmann::ordered_json json_of_fault(const Fault& fault) {
     nlohmann::ordered_json json{{"code", fault.code}, {"detail", fault.detail}};
     if (!fault.pointer.empty()) json["pointer"] = fault.pointer;
+    if (!fault.parameter.empty()) json["parameter"] = fault.parameter;
     if (fault.coordinate) json["coordinate"] = {(*fault.coordinate)[0], (*fault.coordinate)[1]};
     if (fault.index) json["index"] = *fault.index;
     return json;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "api/crs.hpp"
 
@@ -17,27 +18,33 @@ namespace {
 class OptionFaults {
   public:
     void add_unknown(const NamedOption& option, std::span<const std::string_view> known) {
-        add("UNKNOWN_OPTION", option, "is not known here; known are: " + listed(known) + ".");
-        all_unsupported_ = false;
+        add("UNKNOWN_OPTION", option, " is not known here; known are: " + listed(known) + ".");
     }
     void add_invalid(const NamedOption& option, std::string_view allowed) {
         add("INVALID_OPTION", option,
-            "cannot be \"" + option.value + "\": give " + std::string(allowed) + ".");
-        all_unsupported_ = false;
+            " cannot be \"" + option.value + "\": give " + std::string(allowed) + ".");
     }
     void add_unavailable(const NamedOption& option, std::string_view allowed) {
+        const bool all_were = all_unavailable_;
         add("NOT_AVAILABLE", option,
             "=" + option.value + " is not available in this version: give " + std::string(allowed) +
                 ".");
+        all_unavailable_ = all_were;
     }
     void add_contradiction(const NamedOption& option) {
-        add("CONTRADICTION", option, "is given twice with different values: give it once.");
-        all_unsupported_ = false;
+        add("CONTRADICTION", option, " is given twice with different values: give it once.");
+    }
+    void add_incomplete(const NamedOption& option, const std::string& what_is_missing) {
+        add("OPTION_INCOMPLETE", option, what_is_missing);
+    }
+
+    bool refused(std::string_view name) const {
+        return std::find(refused_.begin(), refused_.end(), name) != refused_.end();
     }
 
     bool empty() const { return faults_.empty(); }
     FaultKind kind() const {
-        if (all_unsupported_) return FaultKind::Unsupported;
+        if (all_unavailable_) return FaultKind::Unsupported;
         const bool in_body = std::any_of(faults_.begin(), faults_.end(),
                                          [](const Fault& fault) { return !fault.pointer.empty(); });
         return in_body ? FaultKind::Invalid : FaultKind::Parameter;
@@ -54,13 +61,17 @@ class OptionFaults {
         return out;
     }
     void add(std::string code, const NamedOption& option, const std::string& rest) {
+        all_unavailable_ = false;
+        refused_.push_back(option.name);
         if (faults_.size() >= kMaxFaults) return;
-        const std::string space = rest.front() == '=' ? "" : " ";
-        faults_.push_back({std::move(code), option.name + space + rest, option.pointer});
+        Fault fault{std::move(code), option.name + rest, option.pointer};
+        if (option.pointer.empty()) fault.parameter = option.name;
+        faults_.push_back(std::move(fault));
     }
 
     Faults faults_;
-    bool all_unsupported_ = true;
+    std::vector<std::string_view> refused_;
+    bool all_unavailable_ = true;
 };
 
 bool is_one_of(std::string_view value, std::initializer_list<std::string_view> words) {
@@ -87,74 +98,103 @@ constexpr std::array<std::string_view, 10> kPolygonOptions{
     "elevation", "on_crossing", "improve", "max_deviation", "snap",
     "outside",   "winding",     "lock",    "crs",           "dry_run"};
 
-void read_improve(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
-    if (option.value == "none") {
-        out.improve = core::Improve::None;
-    } else if (option.value == "strict") {
-        out.improve = core::Improve::Strict;
-    } else if (is_one_of(option.value, {"paper", "bounded"})) {
-        faults.add_unavailable(option, "strict or none");
-    } else {
-        faults.add_invalid(option, "strict or none");
+/// The choice of that word; a fault that lists all of them where there is none.
+template <typename Choice>
+void read_choice(const NamedOption& option,
+                 std::initializer_list<std::pair<std::string_view, Choice>> choices, Choice& out,
+                 OptionFaults& faults) {
+    std::string words;
+    for (const auto& [word, choice] : choices) {
+        if (option.value == word) {
+            out = choice;
+            return;
+        }
+        words += words.empty() ? "" : " or ";
+        words += word;
     }
+    faults.add_invalid(option, words);
 }
 
-void read_outside(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
-    if (option.value == "skip") {
-        out.outside = core::Outside::Skip;
-    } else if (option.value == "reject") {
-        out.outside = core::Outside::Reject;
-    } else {
-        faults.add_invalid(option, "skip or reject");
-    }
-}
-
-/// Words of which only the first is granted in this version.
-void read_fixed(const NamedOption& option, std::initializer_list<std::string_view> words,
-                OptionFaults& faults) {
-    const std::string_view granted = *words.begin();
-    if (option.value == granted) return;
-    if (is_one_of(option.value, words)) {
-        faults.add_unavailable(option, granted);
-    } else {
-        faults.add_invalid(option, granted);
-    }
-}
-
-void read_snap(const NamedOption& option, OptionFaults& faults) {
+void read_snap(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
     const auto snap = parse_number(option.value);
     if (!snap || *snap < 0.0) {
-        faults.add_invalid(option, "0");
-    } else if (*snap > 0.0) {
-        faults.add_unavailable(option, "0");
+        return faults.add_invalid(option, "a distance of 0 or more in the session's unit");
     }
+    out.integrate.snap = *snap + 0.0;  // of the two noughts the positive one
+}
+
+void read_max_deviation(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
+    const auto most = parse_number(option.value);
+    if (!most || *most <= 0.0) {
+        return faults.add_invalid(option, "a height above 0 in the session's unit");
+    }
+    out.integrate.max_deviation = *most;
+}
+
+void read_crs(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
+    const auto crs = normalise_crs(option.value);
+    if (!crs) return faults.add_invalid(option, "a name such as EPSG:32616");
+    out.crs = *crs;
 }
 
 void read_polygon_option(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
-    if (option.name == "improve") {
-        read_improve(option, out, faults);
+    using enum core::Improve;
+    core::IntegrateOptions& integrate = out.integrate;
+    if (option.name == "elevation") {
+        read_choice(option, {{"drape", false}, {"own", true}}, out.own_elevations, faults);
+    } else if (option.name == "on_crossing") {
+        read_choice(option, {{"new", core::OnCrossing::New}, {"old", core::OnCrossing::Old}},
+                    integrate.on_crossing, faults);
+    } else if (option.name == "improve") {
+        read_choice(option,
+                    {{"none", None}, {"strict", Strict}, {"paper", Paper}, {"bounded", Bounded}},
+                    integrate.improve, faults);
+    } else if (option.name == "max_deviation") {
+        read_max_deviation(option, out, faults);
+    } else if (option.name == "snap") {
+        read_snap(option, out, faults);
     } else if (option.name == "outside") {
-        read_outside(option, out, faults);
+        read_choice(option, {{"skip", core::Outside::Skip}, {"reject", core::Outside::Reject}},
+                    integrate.outside, faults);
+    } else if (option.name == "winding") {
+        read_choice(option, {{"evenodd", Winding::EvenOdd}, {"nonzero", Winding::NonZero}},
+                    out.winding, faults);
+    } else if (option.name == "lock") {
+        read_bool(option, integrate.lock, faults);
+    } else if (option.name == "crs") {
+        read_crs(option, out, faults);
     } else if (option.name == "dry_run") {
         read_bool(option, out.dry_run, faults);
-    } else if (option.name == "crs") {
-        if (const auto crs = normalise_crs(option.value)) {
-            out.crs = *crs;
-        } else {
-            faults.add_invalid(option, "a name such as EPSG:32616");
-        }
-    } else if (option.name == "elevation") {
-        read_fixed(option, {"drape", "own"}, faults);
-    } else if (option.name == "winding") {
-        read_fixed(option, {"evenodd", "nonzero"}, faults);
-    } else if (option.name == "lock") {
-        read_fixed(option, {"false", "true"}, faults);
-    } else if (option.name == "snap") {
-        read_snap(option, faults);
-    } else if (is_one_of(option.name, {"on_crossing", "max_deviation"})) {
-        faults.add_unavailable(option, "elevation=drape without it");
     } else {
         faults.add_unknown(option, kPolygonOptions);
+    }
+}
+
+const NamedOption* find_option(std::span<const NamedOption> options, std::string_view name) {
+    const auto found = std::find_if(options.begin(), options.end(),
+                                    [name](const NamedOption& o) { return o.name == name; });
+    return found == options.end() ? nullptr : &*found;
+}
+
+/// Options that mean nothing without another, each told where it stands. What goes with an option
+/// that was refused cannot be said.
+void check_pairs(std::span<const NamedOption> options, const PolygonOptions& read,
+                 OptionFaults& faults) {
+    const bool bounded = read.integrate.improve == core::Improve::Bounded;
+    const NamedOption* const deviation = find_option(options, "max_deviation");
+    if (bounded && deviation == nullptr) {
+        faults.add_incomplete(*find_option(options, "improve"),
+                              "=bounded needs max_deviation: add the height by which the surface "
+                              "may move at most, above 0 in the session's unit.");
+    }
+    if (!bounded && deviation != nullptr && !faults.refused("improve")) {
+        faults.add_incomplete(*deviation, " needs improve=bounded: add that, or leave it out.");
+    }
+    const NamedOption* const crossing = find_option(options, "on_crossing");
+    if (!read.own_elevations && crossing != nullptr && !faults.refused("elevation")) {
+        faults.add_incomplete(*crossing,
+                              " needs elevation=own, since draped polygons bring no elevations to "
+                              "choose: add that, or leave it out.");
     }
 }
 
@@ -170,6 +210,12 @@ bool is_repeated(std::span<const NamedOption> options, std::size_t i, OptionFaul
 
 constexpr std::array<std::string_view, 8> kMeshOptions{
     "compression", "tolerance", "up", "constraints", "normals", "regions", "bbox", "version"};
+
+void read_regions(const NamedOption& option, OptionFaults& faults) {
+    bool regions = false;
+    read_bool(option, regions, faults);
+    if (regions) faults.add_unavailable(option, "false");
+}
 
 void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults& faults) {
     if (option.name == "compression") {
@@ -198,7 +244,7 @@ void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults&
     } else if (option.name == "normals") {
         read_bool(option, out.normals, faults);
     } else if (option.name == "regions") {
-        read_fixed(option, {"false", "true"}, faults);
+        read_regions(option, faults);
     } else if (is_one_of(option.name, {"bbox", "version"})) {
         faults.add_unavailable(option, "no such parameter: the whole mesh as it is now");
     } else {
@@ -207,6 +253,10 @@ void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults&
 }
 
 }  // namespace
+
+std::string_view winding_name(Winding winding) {
+    return winding == Winding::NonZero ? "nonzero" : "evenodd";
+}
 
 std::span<const std::string_view> polygon_option_names() {
     return kPolygonOptions;
@@ -223,6 +273,7 @@ Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> option
         if (is_repeated(options, i, faults)) continue;
         read_polygon_option(options[i], out, faults);
     }
+    check_pairs(options, out, faults);
     if (!faults.empty()) {
         const FaultKind kind = faults.kind();
         return {kind, faults.take()};

@@ -18,20 +18,29 @@ struct NamedOption {
     std::string pointer;
 };
 
+/// Which positions a polygon's closed paths have inside.
+enum class Winding {
+    EvenOdd,  ///< those around which the paths go an odd number of times
+    NonZero,  ///< those around which the paths go at all, turns to the left less turns to the right
+};
+
+/// The word on the wire: "evenodd".
+std::string_view winding_name(Winding winding);
+
 /// What a polygons request asks for beside its geometry.
 struct PolygonOptions {
-    core::Improve improve = core::Improve::Strict;
-    core::Outside outside = core::Outside::Skip;
+    core::IntegrateOptions integrate;  ///< what may be asked for of it; budgets are not
+    bool own_elevations = false;       ///< the positions bring z; otherwise they are draped
+    Winding winding = Winding::EvenOdd;
     bool dry_run = false;
     std::string crs;  ///< of the polygons, normalised; empty: the session's
 };
 
-/// The options of a polygons request that this version knows by name, granted or not.
+/// The options of a polygons request by name.
 std::span<const std::string_view> polygon_option_names();
 
-/// Reads the options of a polygons request. The kind of refusal tells unknown or impossible values
-/// (Invalid) from wishes that are right but not granted yet (Unsupported). An option that is given
-/// twice, in the query and in the body, must say the same both times.
+/// Reads the options of a polygons request. An option that is given twice, in the query and in the
+/// body, must say the same both times; one that has no meaning without another needs that too.
 Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options);
 
 /// The query parameters of a mesh request, granted or not.

@@ -64,8 +64,7 @@ Json json_of_shape(const std::string& id, const core::ShapeReport& shape) {
     json["outside"] = json_of_outside(shape.outside);
     json["max_vertical_deviation"] = shape.max_vertical_deviation;
     json["max_plan_deviation"] = shape.max_plan_deviation;
-    // Draping takes every elevation from the surface: none of the ground moves.
-    json["max_elevation_change"] = 0.0;
+    json["max_elevation_change"] = shape.max_elevation_change;
     json["smallest_angle_deg"] = {{"before", angle.before},
                                   {"after", angle.after},
                                   {"p1_before", angle.p1_before},

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "api/crs.hpp"
+#include "api/formats/geojson_elevations.hpp"
 
 namespace tinsmith::server {
 
@@ -22,16 +23,16 @@ std::vector<api::NamedOption> all_options(std::vector<api::NamedOption> given,
     return given;
 }
 
-PolygonEdit edit_of(const std::vector<api::RequestedShape>& shapes,
-                    const api::PolygonOptions& options) {
+/// The edit takes over all but what leads back into the body.
+PolygonEdit edit_of(std::vector<api::RequestedShape>& shapes, const api::PolygonOptions& options) {
     PolygonEdit edit;
     edit.dry_run = options.dry_run;
-    edit.options.improve = options.improve;
-    edit.options.outside = options.outside;
-    for (const api::RequestedShape& shape : shapes) {
-        edit.shapes.push_back(shape.shape);
-        edit.client_ids.push_back(shape.id);
-        edit.properties.push_back(shape.properties);
+    edit.winding = options.winding;
+    edit.options = options.integrate;
+    for (api::RequestedShape& shape : shapes) {
+        edit.shapes.push_back(std::move(shape.shape));
+        edit.origins.push_back(
+            {std::move(shape.id), std::move(shape.properties), shape.type, shape.polygon_starts});
     }
     return edit;
 }
@@ -41,14 +42,14 @@ bool is_contradiction(const std::string& claimed, const std::string& option) {
     return !claimed.empty() && !option.empty() && claimed != option;
 }
 
+/// As near as the place is known. A body that is a geometry has no pointer of its own.
 std::string pointer_of(const core::ErrorPlace& place,
                        const std::vector<api::RequestedShape>& shapes) {
     if (!place.shape || *place.shape >= shapes.size()) return {};
     const api::RequestedShape& shape = shapes[*place.shape];
-    const auto& paths = shape.shape.paths;
-    const bool is_point = place.path && place.point && *place.path < paths.size() &&
-                          *place.point < paths[*place.path].points.size();
-    return is_point ? api::coordinate_pointer(shape, *place.path, *place.point) : shape.pointer;
+    if (!place.path) return shape.pointer;
+    return place.point ? api::coordinate_pointer(shape, *place.path, *place.point)
+                       : api::path_pointer(shape, *place.path);
 }
 
 }  // namespace
@@ -60,6 +61,13 @@ api::Parsed<PolygonWork> read_polygon_work(std::string_view body,
     if (!request) return {request.kind(), std::move(request.faults())};
     auto options = api::parse_polygon_options(all_options(std::move(given), *request));
     if (!options) return {options.kind(), std::move(options.faults())};
+
+    if (options->own_elevations) {
+        auto faults = api::elevation_faults(request->shapes, limits.max_faults);
+        if (!faults.empty()) return {api::FaultKind::Invalid, std::move(faults)};
+    } else {
+        api::drop_elevations(request->shapes);
+    }
 
     // The reader may hand the name on as it was written; two spellings are one system.
     const std::string claimed = api::normalise_crs(request->crs).value_or(request->crs);

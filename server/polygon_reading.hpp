@@ -12,14 +12,14 @@
 #include "api/requests.hpp"
 #include "core/types/result.hpp"
 #include "server/limits.hpp"
-#include "server/session.hpp"
+#include "server/polygon.hpp"
 
 namespace tinsmith::server {
 
 /// A polygons request, read and checked, on its way into a session.
 struct PolygonWork {
     PolygonEdit edit;
-    std::vector<api::RequestedShape> shapes;  ///< the same with the way back to the body
+    std::vector<api::RequestedShape> shapes;  ///< the way back to the body; their paths are gone
     std::string crs;                          ///< that the polygons claim; empty: none
     std::string crs_pointer;                  ///< where they claim it; empty: in the query
 };

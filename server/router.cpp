@@ -54,14 +54,18 @@ api::Faults query_faults(const Request& request, std::span<const std::string_vie
                               "\"" + name + "\" is not a parameter here; " +
                                   (known.empty() ? std::string("there are none.")
                                                  : "known are: " + joined(known) + "."),
-                              {}});
+                              {},
+                              {},
+                              {},
+                              name});
             continue;
         }
         const bool repeated =
             std::any_of(query.begin(), query.begin() + static_cast<std::ptrdiff_t>(i),
                         [&name](const NameValue& earlier) { return earlier.first == name; });
         if (repeated) {
-            faults.push_back({"REPEATED_PARAMETER", "\"" + name + "\" is given twice.", {}});
+            faults.push_back(
+                {"REPEATED_PARAMETER", "\"" + name + "\" is given twice.", {}, {}, {}, name});
         }
     }
     return faults;

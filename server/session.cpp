@@ -41,6 +41,27 @@ std::optional<core::MeshData> copy_if_possible(const core::Tin& tin) {
     }
 }
 
+/// Leaves the closed paths, in plan: what says where the inside is.
+void keep_outline(core::Shape& shape) noexcept {
+    std::erase_if(shape.paths, [](const core::Path& path) { return !path.closed; });
+    for (core::Path& path : shape.paths)
+        path.elevations = std::vector<double>();  // {} would keep the memory
+}
+
+/// About what a polygon holds in memory, its part of the report with it.
+std::size_t bytes_of(const Polygon& polygon) {
+    std::size_t sum = sizeof polygon + polygon.origin.properties.size() +
+                      polygon.origin.client_id.size() +
+                      polygon.origin.polygon_starts.size() * sizeof(std::size_t);
+    for (const core::Path& path : polygon.outline.paths)
+        sum += sizeof path + path.points.size() * sizeof(core::Point2);
+    for (const core::Chain& chain : polygon.chains())
+        sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
+    for (const core::OutsidePart& part : polygon.report->shapes[polygon.shape].outside)
+        sum += sizeof part + part.points.size() * sizeof(core::Point2);
+    return sum;
+}
+
 bool is_expected(const PolygonEdit& edit, std::uint64_t version) {
     return !edit.expected_version || *edit.expected_version == version;
 }
@@ -62,7 +83,7 @@ std::shared_ptr<Session> Session::fork(std::string id, std::string birth) const 
     auto copy = std::make_shared<Session>(std::move(facts), tin_);
     copy->version_ = version_;
     copy->next_polygon_ = next_polygon_;
-    copy->text_bytes_ = text_bytes_;
+    copy->polygon_bytes_ = polygon_bytes_;
     copy->polygons_ = polygons_;
     copy->refresh_view();
     return copy;
@@ -101,7 +122,7 @@ void Session::refresh_view() noexcept {
     view_.triangles = tin_.triangle_count();
     view_.bounds = tin_.bounds();
     view_.polygons = polygons_.size();
-    view_.memory_bytes = tin_.memory_bytes() + text_bytes_;
+    view_.memory_bytes = tin_.memory_bytes() + polygon_bytes_;
 }
 
 PolygonOutcome Session::integrate(PolygonEdit edit) {
@@ -141,10 +162,11 @@ PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {
 
 void Session::keep_polygons(PolygonEdit& edit, const PolygonResult& result) noexcept {
     for (std::size_t i = 0; i < edit.shapes.size(); ++i) {
-        text_bytes_ += edit.properties[i].size() + edit.client_ids[i].size();
+        keep_outline(edit.shapes[i]);
         // The ids are short enough to be copied without taking memory.
-        polygons_.push_back({result.polygon_ids[i], std::move(edit.client_ids[i]),
-                             std::move(edit.properties[i]), result.report, i});
+        polygons_.push_back({result.polygon_ids[i], std::move(edit.origins[i]),
+                             std::move(edit.shapes[i]), edit.winding, result.report, i});
+        polygon_bytes_ += bytes_of(polygons_.back());
     }
     next_polygon_ += edit.shapes.size();
 }

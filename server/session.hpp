@@ -7,13 +7,13 @@
 #include <optional>
 #include <shared_mutex>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "api/responses.hpp"
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
+#include "server/polygon.hpp"
 
 namespace tinsmith::server {
 
@@ -25,41 +25,6 @@ struct SessionFacts {
     std::string crs;  ///< empty: unknown
     std::string unit;
 };
-
-/// A polygon that was integrated. Its id is never given to another.
-struct Polygon {
-    std::string id;
-    std::string client_id;                       ///< the Feature's own; empty: none
-    std::string properties;                      ///< the Feature's own, text of a JSON object
-    std::shared_ptr<const core::Report> report;  ///< of the request that brought it
-    std::size_t shape = 0;                       ///< its index there
-};
-
-/// The shapes of one request, and what each brings along (one for one with the shapes).
-struct PolygonEdit {
-    std::vector<core::Shape> shapes;
-    std::vector<std::string> client_ids;
-    std::vector<std::string> properties;
-    core::IntegrateOptions options;
-    bool dry_run = false;
-    bool want_mesh = false;  ///< the answer shall hold the mesh that came of it
-    std::optional<std::uint64_t> expected_version;  ///< from If-Match
-    std::size_t max_triangles = SIZE_MAX;           ///< of the session after the edit
-};
-
-struct PolygonResult {
-    std::uint64_t version = 0;  ///< after the edit; unchanged by a dry run
-    std::vector<std::string> polygon_ids;
-    std::shared_ptr<const core::Report> report;
-    /// If it was wanted. Absent all the same where memory ran out after the edit was made.
-    std::optional<core::MeshData> mesh;
-};
-
-struct VersionMismatch {
-    std::uint64_t current = 0;
-};
-
-using PolygonOutcome = std::variant<PolygonResult, core::Errors, VersionMismatch>;
 
 /// A mesh at one version, copied out so that it can be encoded while the session goes on.
 struct MeshCopy {
@@ -86,7 +51,7 @@ class Session {
     api::SessionView view() const;
     MeshCopy copy_mesh() const;
     /// Integrates all shapes or none. A dry run works on a copy and holds no writer's lock.
-    /// Requires: shapes, client_ids and properties of one length.
+    /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);
 
   private:
@@ -103,7 +68,7 @@ class Session {
     core::Tin tin_;
     std::uint64_t version_ = 1;
     std::uint64_t next_polygon_ = 1;
-    std::size_t text_bytes_ = 0;  ///< of the polygons' properties and names
+    std::size_t polygon_bytes_ = 0;  ///< of all that is kept of the polygons beside the mesh
     std::vector<Polygon> polygons_;
 
     mutable std::mutex view_mutex_;  ///< guards the view; taken last and never held for long

@@ -18,8 +18,10 @@ enum class GeometryType { Point, MultiPoint, LineString, MultiLineString, Polygo
 /// The word of RFC 7946 for a geometry: "MultiPolygon".
 std::string_view geometry_name(GeometryType type);
 
-/// One geometry of the request, ready for the core, with the way back to where it was written.
+/// One geometry of the request with the way back to where it was written.
 struct RequestedShape {
+    /// Paths have elevations as they were written, where any of their positions has one: NaN for
+    /// the positions without. See geojson_elevations.hpp for how they become fit for the core.
     core::Shape shape;
     GeometryType type = GeometryType::Polygon;
     std::string pointer;            ///< JSON Pointer of the geometry; "" when it is the body itself
@@ -27,10 +29,18 @@ struct RequestedShape {
     std::string properties = "{}";  ///< the Feature's properties, the text of a JSON object
     /// MultiPolygon only: for each polygon the index of its first path. Ascending.
     std::vector<std::size_t> polygon_starts;
+    /// Polygons and MultiPolygons only: of each ring's last position, which its path leaves out.
+    /// NaN: it has none.
+    std::vector<double> closing_elevations;
 };
 
-/// JSON Pointer of one coordinate: "/features/3/geometry/coordinates/0/17".
-/// Requires: `path` and `point` name a point of `shape`.
+/// JSON Pointer of one path, a ring, a line or a single position: "/geometry/coordinates/0".
+/// Requires: `path` names a path of `shape`.
+std::string path_pointer(const RequestedShape& shape, std::size_t path);
+
+/// JSON Pointer of one position: "/features/3/geometry/coordinates/0/17".
+/// Requires: `path` and `point` name a point of `shape`, or the one after a ring's last: its
+/// repeated first.
 std::string coordinate_pointer(const RequestedShape& shape, std::size_t path, std::size_t point);
 
 /// A polygons request as its body states it.
@@ -44,8 +54,8 @@ struct PolygonRequest {
 
 /// Reads a GeoJSON geometry, Feature or FeatureCollection (RFC 7946, but in plan coordinates of a
 /// projected system). A ring becomes a closed path without its repeated last position; a position
-/// a path of one point. Elevations and further numbers of a position are passed over, and so are
-/// foreign members. GeometryCollections are refused: their members can be Features.
+/// a path of one point. Numbers of a position beyond the third are passed over, and so are foreign
+/// members. GeometryCollections are refused: their members can be Features.
 /// Names every fault, not only the first.
 Parsed<PolygonRequest> read_geojson(std::string_view body, const ReadLimits& limits);
 

@@ -14,6 +14,12 @@ using json::Reader;
 using json::Scalar;
 using json::Value;
 
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
 void CoordinatesReader::write_to(Coordinates& out) {
     out_ = &out;
     level_ = 0;
@@ -108,6 +114,7 @@ void CoordinatesReader::scalar(Reader& reader, const Scalar& value) {
 void CoordinatesReader::begin_position(Reader& reader) {
     holds_[level_ - 1] = Holds::Numbers;
     numbers_ = 0;
+    elevation_ = kNone;
     position_sound_ = charge(reader);
     if (out_->depth == 0 && out_->arrays[level_ - 1].empty()) out_->depth = level_;
     if (out_->depth == level_) return;
@@ -131,6 +138,7 @@ void CoordinatesReader::take_number(Reader& reader, const Scalar& value) {
     }
     if (numbers_ == 1) position_.x = value.number;
     if (numbers_ == 2) position_.y = value.number;
+    if (is_elevation) elevation_ = value.number;
 }
 
 void CoordinatesReader::end_position(Reader& reader) {
@@ -138,7 +146,11 @@ void CoordinatesReader::end_position(Reader& reader) {
         position_sound_ = false;
         reader.fault("POSITION_TOO_SHORT", "A position is two numbers or more: [x, y].");
     }
-    if (!position_sound_) position_.x = std::numeric_limits<double>::quiet_NaN();
+    if (!position_sound_) position_.x = kNone;
+    if (!std::isnan(elevation_) || !out_->elevations.empty()) {
+        out_->elevations.resize(out_->positions.size(), kNone);
+        out_->elevations.push_back(elevation_);
+    }
     out_->positions.push_back(position_);
 }
 

@@ -24,6 +24,8 @@ struct Coordinates {
 
     std::size_t depth = 0;                ///< of the positions; 0: there is no position
     std::vector<core::Point2> positions;  ///< x is NaN where the position had a fault
+    /// One for each position, NaN where it has none. Empty: none has one, which costs nothing.
+    std::vector<double> elevations;
     /// For each depth the arrays of arrays, or of positions, that begin there: the number of
     /// positions, and of arrays one deeper, that came before.
     struct Start {
@@ -73,6 +75,7 @@ class CoordinatesReader : public json::Value, public json::Container {
     std::array<Holds, Coordinates::kMostDepth> holds_{};
     std::size_t numbers_ = 0;  ///< of the position being read
     core::Point2 position_;
+    double elevation_ = 0.0;  ///< NaN: none
     bool position_sound_ = true;
 };
 

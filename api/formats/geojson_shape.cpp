@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -86,13 +87,6 @@ class ShapeMaker {
 
     std::string place() const { return pointer_to(made_.pointer, "coordinates"); }
 
-    /// Of a whole path, or of the geometry's coordinates where the path is all of them.
-    std::string place_of(std::size_t path) const {
-        std::string pointer = coordinate_pointer(made_, path, 0);
-        pointer.resize(pointer.rfind('/'));
-        return pointer;
-    }
-
     bool nesting_fits() {
         if (!coordinates_.sound) return false;  // told while it was read
         const TypeRow& row = row_of(made_.type);
@@ -116,10 +110,27 @@ class ShapeMaker {
     }
 
     void take_points() {
-        made_.shape.paths.reserve(coordinates_.positions.size());
-        for (const Point2& position : coordinates_.positions) {
-            made_.shape.paths.push_back({{position}, false});
+        const std::vector<Point2>& positions = coordinates_.positions;
+        made_.shape.paths.reserve(positions.size());
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            made_.shape.paths.push_back({{positions[i]}, false, elevations_of(i, 1)});
         }
+    }
+
+    /// Of so many positions; empty where none of them has one.
+    std::vector<double> elevations_of(std::size_t begin, std::size_t count) const {
+        if (coordinates_.elevations.empty()) return {};
+        const auto first = coordinates_.elevations.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto last = first + static_cast<std::ptrdiff_t>(count);
+        if (std::all_of(first, last, [](double z) { return std::isnan(z); })) return {};
+        return {first, last};
+    }
+
+    /// Of the position before `end`; NaN where it has none.
+    double closing_elevation(std::size_t end) const {
+        if (coordinates_.elevations.empty() || end == 0)
+            return std::numeric_limits<double>::quiet_NaN();
+        return coordinates_.elevations[end - 1];
     }
 
     void take_polygons() {
@@ -143,17 +154,20 @@ class ShapeMaker {
             // A position at fault was told; whether its line is right cannot be said.
             const bool known = std::none_of(line.begin(), line.end(),
                                             [](const Point2& p) { return std::isnan(p.x); });
-            made_.shape.paths.push_back(is_polygonal(made_.type) ? ring(i, line, known)
-                                                                 : open_line(i, line, known));
+            core::Path path =
+                is_polygonal(made_.type) ? ring(i, line, known) : open_line(i, line, known);
+            path.elevations = elevations_of(begin, path.points.size());
+            if (path.closed) made_.closing_elevations.push_back(closing_elevation(end));
+            made_.shape.paths.push_back(std::move(path));
         }
     }
 
     core::Path open_line(std::size_t path, std::span<const Point2> line, bool known) {
         if (known && distinct(line, 2) < 2) {
-            fault("LINE_TOO_SHORT", "A line needs two different positions.", place_of(path),
-                  line.empty() ? nullptr : &line.front());
+            fault("LINE_TOO_SHORT", "A line needs two different positions.",
+                  path_pointer(made_, path), line.empty() ? nullptr : &line.front());
         }
-        return {{line.begin(), line.end()}, false};
+        return {{line.begin(), line.end()}, false, {}};
     }
 
     core::Path ring(std::size_t path, std::span<const Point2> line, bool known) {
@@ -163,14 +177,14 @@ class ShapeMaker {
             fault("RING_TOO_SHORT",
                   "A ring needs four positions, the last the same as the first, and three that "
                   "differ.",
-                  place_of(path), first);
+                  path_pointer(made_, path), first);
         } else if (line.front() != line.back()) {
             fault("RING_NOT_CLOSED", "The last position of a ring is the same as its first.",
-                  pointer_to(place_of(path), line.size() - 1), &line.back());
+                  pointer_to(path_pointer(made_, path), line.size() - 1), &line.back());
         } else {
             line = line.first(line.size() - 1);
         }
-        return {{line.begin(), line.end()}, true};
+        return {{line.begin(), line.end()}, true, {}};
     }
 
     Coordinates& coordinates_;
@@ -191,18 +205,16 @@ std::optional<GeometryType> geometry_type(std::string_view name) {
     return std::nullopt;
 }
 
-std::string coordinate_pointer(const RequestedShape& shape, std::size_t path, std::size_t point) {
+std::string path_pointer(const RequestedShape& shape, std::size_t path) {
     std::string base = pointer_to(shape.pointer, "coordinates");
     switch (shape.type) {
         case GeometryType::Point:
+        case GeometryType::LineString:
             return base;
         case GeometryType::MultiPoint:
-            return pointer_to(base, path);
-        case GeometryType::LineString:
-            return pointer_to(base, point);
         case GeometryType::MultiLineString:
         case GeometryType::Polygon:
-            return pointer_to(pointer_to(base, path), point);
+            return pointer_to(base, path);
         case GeometryType::MultiPolygon:
             break;
     }
@@ -211,7 +223,13 @@ std::string coordinate_pointer(const RequestedShape& shape, std::size_t path, st
     // one does and is passed by.
     const auto after = std::upper_bound(starts.begin(), starts.end(), path);
     const auto polygon = static_cast<std::size_t>(after - starts.begin()) - 1;
-    return pointer_to(pointer_to(pointer_to(base, polygon), path - starts[polygon]), point);
+    return pointer_to(pointer_to(base, polygon), path - starts[polygon]);
+}
+
+std::string coordinate_pointer(const RequestedShape& shape, std::size_t path, std::size_t point) {
+    const bool is_point =
+        shape.type == GeometryType::Point || shape.type == GeometryType::MultiPoint;
+    return is_point ? path_pointer(shape, path) : pointer_to(path_pointer(shape, path), point);
 }
 
 RequestedShape make_shape(GeometryType type, Coordinates& coordinates, std::string pointer,

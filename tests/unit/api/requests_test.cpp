@@ -10,56 +10,66 @@ Parsed<PolygonOptions> polygon_options(const std::vector<NamedOption>& options) 
     return parse_polygon_options(options);
 }
 
-/// "kind:code" of the only fault, or what else came.
+/// The code of the first fault, or "ok".
 std::string fault_of(const std::string& name, const std::string& value) {
     const auto parsed = polygon_options({{name, value, ""}});
-    if (parsed) return "ok";
-    const std::string kind = parsed.kind() == FaultKind::Unsupported ? "later:" : "wrong:";
-    return kind + parsed.faults().front().code;
+    return parsed ? "ok" : parsed.faults().front().code;
 }
 
 TEST(PolygonOptions, HaveTheAgreedDefaults) {
     const auto parsed = polygon_options({});
     ASSERT_TRUE(parsed);
-    EXPECT_EQ(parsed->improve, core::Improve::Strict);
-    EXPECT_EQ(parsed->outside, core::Outside::Skip);
+    EXPECT_FALSE(parsed->own_elevations);
+    EXPECT_EQ(parsed->integrate.on_crossing, core::OnCrossing::New);
+    EXPECT_EQ(parsed->integrate.improve, core::Improve::Strict);
+    EXPECT_EQ(parsed->integrate.snap, 0.0);
+    EXPECT_EQ(parsed->integrate.outside, core::Outside::Skip);
+    EXPECT_FALSE(parsed->integrate.lock);
+    EXPECT_EQ(parsed->winding, Winding::EvenOdd);
     EXPECT_FALSE(parsed->dry_run);
     EXPECT_EQ(parsed->crs, "");
 }
 
 TEST(PolygonOptions, AreReadByName) {
-    const auto parsed = polygon_options({{"improve", "none", ""},
+    const auto parsed = polygon_options({{"improve", "bounded", ""},
+                                         {"max_deviation", "0.125", ""},
                                          {"outside", "reject", ""},
                                          {"dry_run", "true", ""},
                                          {"crs", "urn:ogc:def:crs:EPSG::32616", ""},
-                                         {"elevation", "drape", ""},
-                                         {"winding", "evenodd", ""},
-                                         {"lock", "false", ""},
-                                         {"snap", "0.0", ""}});
+                                         {"elevation", "own", ""},
+                                         {"on_crossing", "old", ""},
+                                         {"winding", "nonzero", ""},
+                                         {"lock", "true", ""},
+                                         {"snap", "2.5E-1", ""}});
     ASSERT_TRUE(parsed);
-    EXPECT_EQ(parsed->improve, core::Improve::None);
-    EXPECT_EQ(parsed->outside, core::Outside::Reject);
+    EXPECT_TRUE(parsed->own_elevations);
+    EXPECT_EQ(parsed->integrate.on_crossing, core::OnCrossing::Old);
+    EXPECT_EQ(parsed->integrate.improve, core::Improve::Bounded);
+    EXPECT_EQ(parsed->integrate.max_deviation, 0.125);
+    EXPECT_EQ(parsed->integrate.outside, core::Outside::Reject);
+    EXPECT_EQ(parsed->integrate.snap, 0.25);
+    EXPECT_TRUE(parsed->integrate.lock);
+    EXPECT_EQ(parsed->winding, Winding::NonZero);
     EXPECT_TRUE(parsed->dry_run);
     EXPECT_EQ(parsed->crs, "EPSG:32616");
 }
 
-TEST(PolygonOptions, TellWhatIsNotAvailableFromWhatIsWrong) {
-    for (const auto& [name, value] :
-         std::vector<std::pair<std::string, std::string>>{{"elevation", "own"},
-                                                          {"improve", "paper"},
-                                                          {"improve", "bounded"},
-                                                          {"snap", "0.25"},
-                                                          {"winding", "nonzero"},
-                                                          {"lock", "true"},
-                                                          {"max_deviation", "1"},
-                                                          {"on_crossing", "new"}}) {
-        EXPECT_EQ(fault_of(name, value), "later:NOT_AVAILABLE") << name << "=" << value;
-    }
+TEST(PolygonOptions, KnowEveryImprovement) {
+    EXPECT_EQ(polygon_options({{"improve", "none", ""}})->integrate.improve, core::Improve::None);
+    EXPECT_EQ(polygon_options({{"improve", "paper", ""}})->integrate.improve, core::Improve::Paper);
+}
+
+TEST(PolygonOptions, RefuseValuesThatCannotBe) {
     for (const auto& [name, value] :
          std::vector<std::pair<std::string, std::string>>{{"elevation", "up"},
+                                                          {"on_crossing", "both"},
                                                           {"improve", "Strict"},
+                                                          {"max_deviation", "0"},
+                                                          {"max_deviation", "-1"},
+                                                          {"max_deviation", "inf"},
                                                           {"snap", "-1"},
                                                           {"snap", "nan"},
+                                                          {"snap", "1e999"},
                                                           {"snap", "1x"},
                                                           {"snap", ""},
                                                           {"winding", ""},
@@ -67,14 +77,51 @@ TEST(PolygonOptions, TellWhatIsNotAvailableFromWhatIsWrong) {
                                                           {"dry_run", "1"},
                                                           {"outside", "clip"},
                                                           {"crs", "somewhere"}}) {
-        EXPECT_EQ(fault_of(name, value), "wrong:INVALID_OPTION") << name << "=" << value;
+        EXPECT_EQ(fault_of(name, value), "INVALID_OPTION") << name << "=" << value;
     }
-    EXPECT_EQ(fault_of("colour", "red"), "wrong:UNKNOWN_OPTION");
+    EXPECT_EQ(fault_of("colour", "red"), "UNKNOWN_OPTION");
+}
+
+TEST(PolygonOptions, SayWhatToGiveInstead) {
+    const auto parsed = polygon_options({{"improve", "best", ""}, {"winding", "x", ""}});
+    ASSERT_FALSE(parsed);
+    EXPECT_EQ(parsed.faults()[0].detail,
+              "improve cannot be \"best\": give none or strict or paper or bounded.");
+    EXPECT_EQ(parsed.faults()[1].detail, "winding cannot be \"x\": give evenodd or nonzero.");
+}
+
+TEST(PolygonOptions, NeedTheOtherHalf) {
+    EXPECT_EQ(fault_of("improve", "bounded"), "OPTION_INCOMPLETE");
+    EXPECT_EQ(fault_of("max_deviation", "1"), "OPTION_INCOMPLETE");
+    EXPECT_EQ(fault_of("on_crossing", "new"), "OPTION_INCOMPLETE");
+    const auto parsed = polygon_options({{"max_deviation", "1", "/tinsmith/max_deviation"},
+                                         {"improve", "paper", ""},
+                                         {"on_crossing", "old", ""},
+                                         {"elevation", "drape", ""}});
+    ASSERT_FALSE(parsed);
+    ASSERT_EQ(parsed.faults().size(), 2U);
+    EXPECT_EQ(parsed.faults()[0].pointer, "/tinsmith/max_deviation");
+    EXPECT_EQ(parsed.faults()[0].parameter, "");
+    EXPECT_EQ(parsed.faults()[0].detail.substr(0, 36), "max_deviation needs improve=bounded:");
+    EXPECT_EQ(parsed.faults()[1].pointer, "");
+    EXPECT_EQ(parsed.faults()[1].parameter, "on_crossing");
+    EXPECT_EQ(parsed.faults()[1].detail.substr(0, 32), "on_crossing needs elevation=own,");
+}
+
+TEST(PolygonOptions, BlameNoOptionForItsRefusedPartner) {
+    const auto parsed = polygon_options({{"on_crossing", "old", ""},
+                                         {"elevation", "mine", ""},
+                                         {"max_deviation", "1", ""},
+                                         {"improve", "best", ""}});
+    ASSERT_FALSE(parsed);
+    ASSERT_EQ(parsed.faults().size(), 2U);
+    EXPECT_EQ(parsed.faults()[0].parameter, "elevation");
+    EXPECT_EQ(parsed.faults()[1].parameter, "improve");
 }
 
 TEST(PolygonOptions, NameAllFaultsAtOnce) {
     const auto parsed = polygon_options(
-        {{"colour", "red", "/tinsmith/colour"}, {"lock", "true", ""}, {"snap", "x", ""}});
+        {{"colour", "red", "/tinsmith/colour"}, {"lock", "1", ""}, {"snap", "x", ""}});
     ASSERT_FALSE(parsed);
     ASSERT_EQ(parsed.faults().size(), 3U);
     EXPECT_EQ(parsed.kind(), FaultKind::Invalid);

@@ -57,7 +57,7 @@ TEST(WriteReport, HasTheAgreedShape) {
     core::Report report;
     report.shapes.resize(2);
     report.shapes[0] = {
-        91, 2550, 2640, 5280, 900, {}, {}, 0.0, 0.125, 0.0, {31.25, 0.5, 35.0, 2.0}};
+        91, 2550, 2640, 5280, 900, {}, {}, 0.0, 0.125, 7.5, {31.25, 0.5, 35.0, 2.0}};
     report.shapes[1].segments = 1;
     report.shapes[1].outside.push_back({2, {{1.5, 2}, {3, 4}}});
     report.time_ms = {0.25, 0.5, 0.75};
@@ -69,7 +69,7 @@ TEST(WriteReport, HasTheAgreedShape) {
     EXPECT_EQ(body["polygons"][0], json::parse(R"({
         "id": "p4", "segments": 91, "crossings": 2550, "vertices_added": 2640,
         "triangles_added": 5280, "edges_swapped": 900, "outside": [],
-        "max_vertical_deviation": 0.0, "max_plan_deviation": 0.125, "max_elevation_change": 0.0,
+        "max_vertical_deviation": 0.0, "max_plan_deviation": 0.125, "max_elevation_change": 7.5,
         "smallest_angle_deg": {"before": 31.25, "after": 0.5, "p1_before": 35.0,
                                "p1_after": 2.0}})"));
     EXPECT_EQ(body["polygons"][1]["outside"],

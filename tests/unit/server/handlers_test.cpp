@@ -1,83 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The routes as a client meets them, without a socket.
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include "server/router.hpp"
-#include "server/routes/route_table.hpp"
-#include "server/target.hpp"
+#include "tests/unit/server/handlers.hpp"
 
 namespace tinsmith::server {
 namespace {
-
-using nlohmann::json;
-
-constexpr const char* kSquare =
-    R"({"name": "Square", "crs": "EPSG:32616", "mesh": {
-        "vertices": [[0,0,0],[10,0,1],[10,10,2],[0,10,3]], "triangles": [[0,1,2],[0,2,3]]}})";
-constexpr const char* kParcel =
-    R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]})";
-
-class Handlers : public testing::Test {
-  protected:
-    static Limits few_sessions() {
-        Limits limits;
-        limits.max_sessions = 3;
-        limits.max_vertices = 1000;
-        return limits;
-    }
-
-    Response ask(const std::string& method, const std::string& target,
-                 std::vector<NameValue> headers = {}, const std::string& body = {}) {
-        auto parsed = parse_target(target).value();
-        Request request;
-        request.method = method;
-        request.path = parsed.path;
-        request.query = std::move(parsed.query);
-        request.headers = std::move(headers);
-        request.body = body;
-        request.id = "test";
-        return router.handle(request);
-    }
-
-    Response post(const std::string& target, const std::string& body,
-                  std::vector<NameValue> headers = {}) {
-        headers.emplace_back("content-type", "application/json");
-        return ask("POST", target, std::move(headers), body);
-    }
-
-    std::string make_session() {
-        const Response made = post("/v1/sessions", kSquare);
-        EXPECT_EQ(made.status, 201) << made.body;
-        return "/v1/sessions/" + json::parse(made.body)["id"].get<std::string>();
-    }
-
-    /// The codes in errors[], or the problem's word where there are none.
-    static std::string told(const Response& response) {
-        const auto body = json::parse(response.body, nullptr, false);
-        if (!body.is_object() || response.content_type != "application/problem+json") return "?";
-        if (!body.contains("errors")) return body["type"].get<std::string>().substr(21);
-        std::string codes;
-        for (const auto& error : body["errors"]) {
-            codes += (codes.empty() ? "" : " ") + error["code"].get<std::string>();
-        }
-        return codes;
-    }
-
-    static std::string header(const Response& response, const std::string& name) {
-        for (const auto& [key, value] : response.headers) {
-            if (key == name) return value;
-        }
-        return "";
-    }
-
-    int version_of(const std::string& session) {
-        return json::parse(ask("GET", session).body)["version"].get<int>();
-    }
-
-    Services services{few_sessions()};
-    Router router{make_routes(services)};
-};
 
 TEST_F(Handlers, TellHealthAndLimits) {
     EXPECT_EQ(ask("GET", "/healthz").status, 200);
@@ -203,24 +129,6 @@ TEST_F(Handlers, AnswerWithTheMeshIfAsked) {
     EXPECT_EQ(version_of(session), 2);
     EXPECT_EQ(post(session + "/polygons", kParcel, {{"accept", "text/html"}}).status, 406);
     EXPECT_EQ(version_of(session), 2);
-}
-
-TEST_F(Handlers, RefuseOptionsByName) {
-    const std::string polygons = make_session() + "/polygons";
-    EXPECT_EQ(told(post(polygons + "?colour=red", kParcel)), "UNKNOWN_PARAMETER");
-    EXPECT_EQ(post(polygons + "?improve=much", kParcel).status, 400);
-    const Response later = post(polygons + "?elevation=own&snap=0.5", kParcel);
-    EXPECT_EQ(later.status, 422);
-    EXPECT_EQ(told(later), "NOT_AVAILABLE NOT_AVAILABLE");
-    const Response in_body = post(
-        polygons,
-        R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,2]]], "tinsmith": {"lock": true}})");
-    EXPECT_EQ(in_body.status, 422) << in_body.body;
-    EXPECT_NE(in_body.body.find("/tinsmith/lock"), std::string::npos);
-    EXPECT_EQ(post(polygons + "?crs=EPSG:32616", kParcel).status, 200);
-    const Response elsewhere = post(polygons + "?crs=EPSG:25832", kParcel);
-    EXPECT_EQ(elsewhere.status, 422);
-    EXPECT_EQ(told(elsewhere), "CRS_MISMATCH");
 }
 
 TEST_F(Handlers, LeaveTheSessionAloneWhateverTheFault) {

@@ -21,8 +21,7 @@ core::Tin square() {
 PolygonEdit edit_of(double low, double high) {
     PolygonEdit edit;
     edit.shapes.push_back({{{{{low, low}, {high, low}, {high, high}, {low, high}}, true}}});
-    edit.client_ids.emplace_back();
-    edit.properties.emplace_back("{}");
+    edit.origins.emplace_back();
     return edit;
 }
 
@@ -139,7 +138,7 @@ TEST(SessionStore, CountsItsMemory) {
     const auto kept = std::get<0>(store.add(square(), {}));
     EXPECT_EQ(store.memory_bytes(), kept->view().memory_bytes);
     PolygonEdit edit = edit_of(2, 4);
-    edit.properties[0] = std::string(10'000, ' ');
+    edit.origins[0].properties = std::string(10'000, ' ');
     kept->integrate(std::move(edit));
     EXPECT_GT(store.memory_bytes(), 10'000U);
 }

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "api/formats/geojson.hpp"
+#include "api/requests.hpp"
+#include "core/integrate/options.hpp"
+#include "core/integrate/report.hpp"
+#include "core/integrate/shape.hpp"
+#include "core/types/mesh_data.hpp"
+#include "core/types/result.hpp"
+
+namespace tinsmith::server {
+
+/// What a polygon was when it came, beside its paths.
+struct PolygonOrigin {
+    std::string client_id;          ///< the Feature's own; empty: none
+    std::string properties = "{}";  ///< the Feature's own, text of a JSON object
+    api::GeometryType type = api::GeometryType::Polygon;
+    std::vector<std::size_t> polygon_starts;  ///< see api::RequestedShape
+};
+
+/// A polygon that was integrated. Its id is never given to another.
+struct Polygon {
+    std::string id;
+    PolygonOrigin origin;
+    core::Shape outline;  ///< its closed paths, as asked for, in plan; empty for lines and points
+    api::Winding winding = api::Winding::EvenOdd;  ///< what the outline's inside is
+    std::shared_ptr<const core::Report> report;    ///< of the request that brought it
+    std::size_t shape = 0;                         ///< its index there
+
+    /// As it lies in the mesh of the version that it came with.
+    const std::vector<core::Chain>& chains() const { return report->shapes[shape].chains; }
+};
+
+/// The shapes of one request, and where each comes from (one for one with the shapes).
+struct PolygonEdit {
+    std::vector<core::Shape> shapes;
+    std::vector<PolygonOrigin> origins;
+    api::Winding winding = api::Winding::EvenOdd;
+    core::IntegrateOptions options;
+    bool dry_run = false;
+    bool want_mesh = false;  ///< the answer shall hold the mesh that came of it
+    std::optional<std::uint64_t> expected_version;  ///< from If-Match
+    std::size_t max_triangles = SIZE_MAX;           ///< of the session after the edit
+};
+
+struct PolygonResult {
+    std::uint64_t version = 0;  ///< after the edit; unchanged by a dry run
+    std::vector<std::string> polygon_ids;
+    std::shared_ptr<const core::Report> report;
+    /// If it was wanted. Absent all the same where memory ran out after the edit was made.
+    std::optional<core::MeshData> mesh;
+};
+
+struct VersionMismatch {
+    std::uint64_t current = 0;
+};
+
+using PolygonOutcome = std::variant<PolygonResult, core::Errors, VersionMismatch>;
+
+}  // namespace tinsmith::server
