@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mesh/surgery.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tinsmith::core {
@@ -259,6 +260,15 @@ bool Surgery::is_fresh(Side s) const {
     return ((tin_.triangle(s.triangle()).marks >> (s.index() + kFreshShift)) & 1U) != 0;
 }
 
+void Surgery::set_elevation(VertexId v, double z) {
+    double& elevation = edit(v).z;
+    Bounds& box = tin_.bounds_;
+    if (elevation == box.min.z || elevation == box.max.z) bounds_are_stale_ = true;
+    elevation = z;
+    box.min.z = std::min(box.min.z, z);
+    box.max.z = std::max(box.max.z, z);
+}
+
 FacetId Surgery::give_fresh_facet(TriangleId t) {
     return edit(t).facet = {tin_.next_facet_++};
 }
@@ -268,6 +278,13 @@ void Surgery::log_boundary(VertexId v, VertexId next) {
 }
 
 UndoRecord Surgery::commit() {
+    if (bounds_are_stale_) {
+        const auto [low, high] = std::minmax_element(
+            tin_.vertices_.begin(), tin_.vertices_.end(),
+            [](const Tin::Vertex& l, const Tin::Vertex& r) { return l.z < r.z; });
+        tin_.bounds_.min.z = low->z;
+        tin_.bounds_.max.z = high->z;
+    }
     for (const auto& [id, old] : record_.triangles)
         tin_.triangles_[id.index()].marks &= ~kTransientBits;
     for (std::size_t i = record_.triangle_count; i < tin_.triangles_.size(); ++i)

@@ -42,6 +42,9 @@ class Surgery {
     /// True where the constraint was made by this operation and not before.
     bool is_fresh(Side s) const;
 
+    /// Moves a vertex up or down. The facets around it are the caller's to renew.
+    void set_elevation(VertexId v, double z);
+
     /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie
     /// in one plane with a neighbour.
     FacetId give_fresh_facet(TriangleId t);
@@ -71,6 +74,7 @@ class Surgery {
 
     Tin& tin_;
     UndoRecord record_;
+    bool bounds_are_stale_ = false;  ///< a vertex that was highest or lowest has moved
     bool open_ = true;
 };
 

@@ -93,6 +93,8 @@ class Tin {
         return ((triangle(s.triangle()).marks >> (s.index() + 4)) & 1U) != 0;
     }
     FacetId facet(TriangleId id) const { return triangle(id).facet; }
+    /// The value of the next facet to be made; all that are there have lower ones.
+    std::uint32_t next_facet() const { return next_facet_; }
 
     /// True where a swap may not touch the edge whatever the mode: boundary, constrained, locked.
     bool is_fixed(Side s) const { return !twin(s).valid() || is_constrained(s) || is_locked(s); }

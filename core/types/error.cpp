@@ -31,6 +31,10 @@ std::string_view code_name(ErrorCode code) {
             return "LINE_TOO_SHORT";
         case ErrorCode::ShapeEmpty:
             return "SHAPE_EMPTY";
+        case ErrorCode::ElevationMissing:
+            return "ELEVATION_MISSING";
+        case ErrorCode::ElevationTwice:
+            return "ELEVATION_TWICE";
         case ErrorCode::OutsideMesh:
             return "OUTSIDE_MESH";
         case ErrorCode::LeavesMesh:

@@ -26,9 +26,11 @@ enum class ErrorCode {
     VertexFolded = 207,           ///< the triangles around a vertex overlap
     MeshTooLarge = 208,           ///< more vertices or triangles than the ids can count
     // 300: polygons
-    RingTooShort = 301,  ///< fewer than three distinct positions in a ring
-    LineTooShort = 302,  ///< fewer than two distinct positions in a line
-    ShapeEmpty = 303,    ///< no position at all
+    RingTooShort = 301,      ///< fewer than three distinct positions in a ring
+    LineTooShort = 302,      ///< fewer than two distinct positions in a line
+    ShapeEmpty = 303,        ///< no position at all
+    ElevationMissing = 304,  ///< a path with elevations of its own lacks one
+    ElevationTwice = 305,    ///< one position with two elevations
     // 400: integration
     OutsideMesh = 401,       ///< nothing of the request meets the mesh
     LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that

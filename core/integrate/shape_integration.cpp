@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/integrate/shape_integration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/integrate/measure.hpp"
+#include "core/mesh/walk.hpp"
+#include "core/types/ulp.hpp"
+
+namespace tinsmith::core {
+
+namespace {
+
+/// New vertices are off the old surface's edges by at most `4 ulp` in plan, which the slope turns
+/// into height, and elevations are interpolated to a few ulps of their own.
+double rounding_bound(const Tin& tin, double slope) {
+    const Bounds& box = tin.bounds();
+    const double plan = std::max(
+        {std::fabs(box.min.x), std::fabs(box.max.x), std::fabs(box.min.y), std::fabs(box.max.y)});
+    const double height = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
+    return 4.0 * ulp(plan) * slope + 8.0 * ulp(height);
+}
+
+}  // namespace
+
+bool ShapeIntegration::run(const Shape& shape) {
+    for (std::size_t p = 0; p < shape.paths.size(); ++p)
+        if (!shape.paths[p].points.empty() && !run(p, shape.paths[p])) return false;
+    improve(0);
+    set_elevations();
+    return true;
+}
+
+bool ShapeIntegration::run(std::size_t index, const Path& path) {
+    if (!march_.begin(index, path)) return false;
+    watch_.lap(times_.locate);
+    Point2 last = path.points.front();
+    const std::size_t count = path.points.size();
+    constexpr std::size_t kImproveBatch = 64;
+    for (std::size_t i = 1; i < count + (path.closed ? 1 : 0); ++i) {
+        const Point2 next = path.points[i % count];
+        if (next == last) continue;
+        if (!march_.advance(i % count)) {
+            march_.error()->place.point = i - 1;
+            return false;
+        }
+        last = next;
+        improve(kImproveBatch);
+    }
+    const bool done = march_.finish();
+    watch_.lap(times_.integrate);
+    return done;
+}
+
+/// Improves once so many vertices wait: often enough that facets stay in good shape for the march
+/// and in the cache, seldom enough that the clock costs nothing. Swaps across facets wait until all
+/// the request is in the mesh.
+void ShapeIntegration::improve(std::size_t waiting) {
+    std::vector<VertexId>& changed = march_.changed();
+    if (changed.empty() || changed.size() < waiting) return;
+    if (options_.improve != Improve::None) {
+        watch_.lap(times_.integrate);
+        improver_.improve(changed);
+        watch_.lap(times_.improve);
+    }
+    if (options_.improve == Improve::Paper || options_.improve == Improve::Bounded)
+        changed_.insert(changed_.end(), changed.begin(), changed.end());
+    changed.clear();
+}
+
+/// Gives the chain the elevations that its paths bring; the last word on a vertex holds. The
+/// triangles there are no longer known to lie in one plane with any neighbour: each gets a facet of
+/// its own.
+void ShapeIntegration::set_elevations() {
+    std::vector<OwnElevation> own = march_.own_elevations();
+    std::stable_sort(own.begin(), own.end(), [](const OwnElevation& l, const OwnElevation& r) {
+        return l.vertex < r.vertex;
+    });
+    const Tin& tin = surgery_.tin();
+    const std::uint32_t first_fresh = tin.next_facet();
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        if (i + 1 < own.size() && own[i + 1].vertex == own[i].vertex) continue;
+        const double change = std::fabs(own[i].z - tin.vertex(own[i].vertex).z);
+        if (change == 0.0) continue;
+        max_elevation_change_ = std::max(max_elevation_change_, change);
+        surgery_.set_elevation(own[i].vertex, own[i].z);
+        for_each_side_at(tin, own[i].vertex, [&](Side side) {
+            for (const Side s : {side, tin.twin(side)})
+                if (s.valid() && tin.facet(s.triangle()).value < first_fresh)
+                    surgery_.give_fresh_facet(s.triangle());
+        });
+    }
+}
+
+ShapeReport ShapeIntegration::report() const {
+    const MarchTally& tally = march_.tally();
+    const UndoRecord& record = surgery_.record();
+    const Tin& tin = surgery_.tin();
+    ShapeReport report;
+    report.segments = tally.segments;
+    report.crossings = tally.crossings;
+    report.vertices_added = tin.vertex_count() - record.vertex_count;
+    report.triangles_added = tin.triangle_count() - record.triangle_count;
+    report.edges_swapped = tally.edges_swapped + improver_.edges_swapped();
+    report.outside = tally.outside;
+    report.chains = tally.chains;
+    report.max_plan_deviation = tally.max_plan_deviation;
+    report.max_elevation_change = max_elevation_change_;
+    const Measurement measured = measure_operation(tin, record);
+    report.smallest_angle_deg = measured.smallest_angle_deg;
+    if (report.vertices_added > 0 || report.edges_swapped > 0)
+        report.max_vertical_deviation = rounding_bound(tin, measured.steepest_slope);
+    return report;
+}
+
+}  // namespace tinsmith::core

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/integrate/improve.hpp"
+#include "core/integrate/march.hpp"
+#include "core/integrate/stopwatch.hpp"
+#include "core/mesh/surgery.hpp"
+
+namespace tinsmith::core {
+
+/// Integrates one shape: marches its paths, swaps within facets on the way, sets the elevations
+/// that the paths bring. What it does is in the surgery, which the caller commits or rolls back.
+class ShapeIntegration {
+  public:
+    ShapeIntegration(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
+                     Stopwatch& watch, StageTimes& times)
+        : surgery_(surgery),
+          options_(options),
+          watch_(watch),
+          times_(times),
+          march_(surgery, options, limits),
+          improver_(surgery) {}
+
+    /// False: stopped, see `error`.
+    bool run(const Shape& shape);
+
+    const Error& error() { return *march_.error(); }
+    const MarchTally& tally() const { return march_.tally(); }
+    /// Vertices whose surroundings the march changed; kept for swaps across facets only.
+    std::vector<VertexId>& changed() { return changed_; }
+    ShapeReport report() const;
+
+  private:
+    bool run(std::size_t index, const Path& path);
+    void improve(std::size_t waiting);
+    void set_elevations();
+
+    Surgery& surgery_;
+    const IntegrateOptions& options_;
+    Stopwatch& watch_;
+    StageTimes& times_;
+    March march_;
+    Improver improver_;
+    std::vector<VertexId> changed_;
+    double max_elevation_change_ = 0.0;
+};
+
+}  // namespace tinsmith::core
