@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/regions/region.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "core/mesh/walk.hpp"
+#include "core/predicates/orientation.hpp"
+#include "core/regions/triangle_set.hpp"
+#include "core/regions/winding_number.hpp"
+
+namespace tinsmith::core {
+
+namespace {
+
+/// Finds a region in four steps: the jumps of the winding number across chain edges; from them the
+/// winding of all triangles at the chains, up to one unknown for each connected group of these; one
+/// exact winding number for each group; and from the triangles inside, a flood that never meets a
+/// chain again, for all triangles beside one are known.
+class RegionSearch {
+  public:
+    RegionSearch(const Tin& tin, const ConstraintHistory& history, const Outline& outline,
+                 Winding winding)
+        : tin_(tin), winding_(winding), seen_(tin.triangle_count()) {
+        collect_lines(history, outline);
+        close_joints();
+        settle_jumps();
+    }
+
+    std::vector<TriangleId> run() {
+        const WindingNumber number(segments_);
+        collect_belt();
+        settle_belt(number);
+        for (const TriangleId t : belt_)
+            seen_.insert(t);
+        for (std::size_t i = 0; i < belt_.size(); ++i)
+            if (is_inside(belt_winding_[i])) flood(belt_[i]);
+        // Components that no chain touches are inside as a whole or not at all.
+        for (const TriangleId seed : tin_.components()) {
+            const VertexId v = tin_.triangle(seed).vertices[0];
+            if (std::binary_search(vertices_.begin(), vertices_.end(), v)) continue;
+            if (is_inside(number.around(tin_.plan(v))) && seen_.insert(seed)) flood(seed);
+        }
+        std::sort(found_.begin(), found_.end());
+        return std::move(found_);
+    }
+
+  private:
+    bool is_inside(int winding) const {
+        return winding_ == Winding::EvenOdd ? winding % 2 != 0 : winding != 0;
+    }
+
+    /// The lines that decide: the chains' edges and the parts outside, of all closed paths.
+    void collect_lines(const ConstraintHistory& history, const Outline& outline) {
+        for (const Chain& chain : outline.chains) {
+            if (!outline.shape.paths[chain.path].closed) continue;
+            const std::vector<VertexId> line = history.expand(chain.vertices);
+            vertices_.insert(vertices_.end(), line.begin(), line.end());
+            for (std::size_t i = 1; i < line.size(); ++i) {
+                add_jump(line[i - 1], line[i], 1);
+                segments_.push_back({tin_.plan(line[i - 1]), tin_.plan(line[i])});
+            }
+            if (line.empty()) continue;
+            joints_.emplace_back(line.front(), -1);
+            joints_.emplace_back(line.back(), 1);
+        }
+        for (const OutsidePart& part : outline.outside) {
+            if (!outline.shape.paths[part.path].closed) continue;
+            for (std::size_t i = 1; i < part.points.size(); ++i)
+                segments_.push_back({part.points[i - 1], part.points[i]});
+        }
+        std::sort(vertices_.begin(), vertices_.end());
+        vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    }
+
+    /// The winding number is higher by `times` on the left of a -> b than on its right.
+    void add_jump(VertexId a, VertexId b, int times) {
+        Side side = find_edge(tin_, a, b);
+        if (!side.valid()) return;
+        if (tin_.origin(side) != a) times = -times;
+        jumps_.emplace_back(side, times);
+        if (const Side twin = tin_.twin(side); twin.valid()) jumps_.emplace_back(twin, -times);
+    }
+
+    /// A path that left the mesh within rounding of the boundary did so from a vertex that is not
+    /// on it: the last step, which no edge takes, goes to an end of the boundary edge there.
+    void close_joints() {
+        std::sort(joints_.begin(), joints_.end());
+        for (std::size_t i = 0; i < joints_.size();) {
+            const VertexId v = joints_[i].first;
+            int ends = 0;
+            for (; i < joints_.size() && joints_[i].first == v; ++i)
+                ends += joints_[i].second;
+            if (ends == 0 || boundary_side_from(tin_, v).valid()) continue;
+            VertexId outlet;
+            for_each_side_at(tin_, v, [&](Side s) {
+                while (tin_.origin(s) != v)
+                    s = s.next();
+                if (!tin_.twin(s.next()).valid()) outlet = tin_.destination(s);
+            });
+            if (outlet.valid()) add_jump(v, outlet, ends);
+        }
+    }
+
+    /// One entry for each side, those without a jump left out.
+    void settle_jumps() {
+        std::sort(jumps_.begin(), jumps_.end());
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < jumps_.size();) {
+            const Side side = jumps_[i].first;
+            int sum = 0;
+            for (; i < jumps_.size() && jumps_[i].first == side; ++i)
+                sum += jumps_[i].second;
+            if (sum != 0) jumps_[kept++] = {side, sum};
+        }
+        jumps_.resize(kept);
+    }
+
+    int jump(Side side) const {
+        const auto found =
+            std::lower_bound(jumps_.begin(), jumps_.end(), side,
+                             [](const auto& entry, Side s) { return entry.first < s; });
+        return found != jumps_.end() && found->first == side ? found->second : 0;
+    }
+
+    /// The triangles at the chains' vertices.
+    void collect_belt() {
+        for (const VertexId v : vertices_)
+            for_each_side_at(tin_, v, [this](Side s) { belt_.push_back(s.triangle()); });
+        std::sort(belt_.begin(), belt_.end());
+        belt_.erase(std::unique(belt_.begin(), belt_.end()), belt_.end());
+        belt_winding_.assign(belt_.size(), 0);
+    }
+
+    std::optional<std::size_t> place_in_belt(TriangleId t) const {
+        const auto found = std::lower_bound(belt_.begin(), belt_.end(), t);
+        if (found == belt_.end() || *found != t) return {};
+        return static_cast<std::size_t>(found - belt_.begin());
+    }
+
+    void settle_belt(const WindingNumber& number) {
+        std::vector<bool> reached(belt_.size(), false);
+        std::vector<std::size_t> group;
+        for (std::size_t first = 0; first < belt_.size(); ++first) {
+            if (reached[first]) continue;
+            reached[first] = true;
+            group.assign(1, first);
+            for (std::size_t k = 0; k < group.size(); ++k) {
+                for (unsigned i = 0; i < 3; ++i) {
+                    const Side side(belt_[group[k]], i);
+                    if (!tin_.twin(side).valid()) continue;
+                    const auto next = place_in_belt(tin_.twin(side).triangle());
+                    if (!next || reached[*next]) continue;
+                    reached[*next] = true;
+                    belt_winding_[*next] = belt_winding_[group[k]] - jump(side);
+                    group.push_back(*next);
+                }
+            }
+            const int base = unknown_of(group, number);
+            for (const std::size_t i : group)
+                belt_winding_[i] += base;
+        }
+    }
+
+    /// What the group's windings lack, from an exact winding number in its largest triangle that
+    /// holds its centroid's double. In one that is some ulps wide none may; a mesh of nothing else
+    /// counts as outside.
+    int unknown_of(const std::vector<std::size_t>& group, const WindingNumber& number) const {
+        double largest = 0.0;
+        std::optional<std::size_t> best;
+        Point2 inner;
+        for (const std::size_t i : group) {
+            const auto [u, v, w] = tin_.triangle(belt_[i]).vertices;
+            const Point2 a = tin_.plan(u), b = tin_.plan(v), c = tin_.plan(w);
+            const double area = estimate_doubled_area(a, b, c).value;
+            if (!(area > largest)) continue;
+            const Point2 centre{a.x + ((b.x - a.x) + (c.x - a.x)) / 3.0,
+                                a.y + ((b.y - a.y) + (c.y - a.y)) / 3.0};
+            if (!is_left(a, b, centre) || !is_left(b, c, centre) || !is_left(c, a, centre))
+                continue;
+            largest = area;
+            best = i;
+            inner = centre;
+        }
+        return best ? number.around(inner) - belt_winding_[*best] : 0;
+    }
+
+    /// Adds the triangle and all that are reached from it without meeting one that was seen.
+    void flood(TriangleId start) {
+        std::size_t next = found_.size();
+        found_.push_back(start);
+        for (; next < found_.size(); ++next)
+            for (const Side twin : tin_.triangle(found_[next]).twins)
+                if (twin.valid() && seen_.insert(twin.triangle()))
+                    found_.push_back(twin.triangle());
+    }
+
+    const Tin& tin_;
+    const Winding winding_;
+    std::vector<VertexId> vertices_;                ///< of the chains, each once, in order
+    std::vector<DirectedSegment> segments_;         ///< all lines that decide
+    std::vector<std::pair<VertexId, int>> joints_;  ///< chains that end there, less that start
+    std::vector<std::pair<Side, int>> jumps_;  ///< winding on the side's left less on its right
+    std::vector<TriangleId> belt_;             ///< triangles at the chains, in order
+    std::vector<int> belt_winding_;            ///< theirs
+    TriangleSet seen_;
+    std::vector<TriangleId> found_;
+};
+
+/// A sum whose error does not grow with the number of terms. Source: Neumaier 1974.
+class Sum {
+  public:
+    void add(double value) {
+        const double sum = sum_ + value;
+        rest_ += std::fabs(sum_) >= std::fabs(value) ? (sum_ - sum) + value : (value - sum) + sum_;
+        sum_ = sum;
+    }
+    double value() const { return sum_ + rest_; }
+
+  private:
+    double sum_ = 0.0;
+    double rest_ = 0.0;
+};
+
+void measure(const Tin& tin, Region& region) {
+    Sum plan, surface;
+    for (const TriangleId t : region.triangles) {
+        const auto [u, v, w] = tin.triangle(t).vertices;
+        const Point3 a = tin.vertex(u).point(), b = tin.vertex(v).point(),
+                     c = tin.vertex(w).point();
+        const double upward = doubled_area(a.plan(), b.plan(), c.plan());
+        const double abx = b.x - a.x, aby = b.y - a.y, abz = b.z - a.z;
+        const double acx = c.x - a.x, acy = c.y - a.y, acz = c.z - a.z;
+        const double east = aby * acz - abz * acy;
+        const double north = abz * acx - abx * acz;
+        plan.add(upward / 2.0);
+        surface.add(std::sqrt(upward * upward + east * east + north * north) / 2.0);
+    }
+    region.plan_area = plan.value();
+    region.surface_area = surface.value();
+}
+
+}  // namespace
+
+Region find_region(const Tin& tin, const ConstraintHistory& history, const Outline& outline,
+                   Winding winding) {
+    Region region;
+    region.triangles = RegionSearch(tin, history, outline, winding).run();
+    measure(tin, region);
+    return region;
+}
+
+}  // namespace tinsmith::core
