@@ -186,7 +186,7 @@ std::optional<VertexId> March::end_within(Side edge, double distance) const {
 /// Whether the way goes through the vertex, though it is inside a facet.
 bool March::is_ahead_within_snap(VertexId v) const {
     const Point2 p = tin_.plan(v);
-    return is_near_segment(p, options_.snap) && along(p) > along(tin_.plan(at_));
+    return is_near_segment(p, snap_) && along(p) > along(tin_.plan(at_));
 }
 
 /// Whether p is within the distance of the input segment. Filtered like `is_near_edge`.

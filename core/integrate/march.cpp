@@ -18,7 +18,12 @@ March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimit
     const double largest = std::max(
         {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
     reach_of_rounding_ = 4.0 * ulp(largest);
-    near_ = std::max(options.snap, reach_of_rounding_ / 2.0);
+    set_snap(options.snap);
+}
+
+void March::set_snap(double snap) {
+    snap_ = snap;
+    near_ = std::max(snap, reach_of_rounding_ / 2.0);
 }
 
 bool March::begin(std::size_t index, const Path& path) {
@@ -28,6 +33,7 @@ bool March::begin(std::size_t index, const Path& path) {
     const Point2 start = path.points.front();
     start_ = end_ = start;
     outside_.clear();
+    first_ = {};
     const std::size_t triangles = tin_.triangle_count();
     const TriangleId seed =
         options_.walk_seed == 0
@@ -43,21 +49,49 @@ bool March::begin(std::size_t index, const Path& path) {
     tally_.met_mesh = true;
     tally_.chains.push_back({path_index_, {}});
     stand_on(settle(location, start));
+    first_ = at_;
     return within_limits();
 }
 
 bool March::advance(std::size_t to) {
     from_ = to_;
     to_ = to;
-    start_ = end_;
-    end_ = path_->points[to];
-    length_ = std::sqrt((end_.x - start_.x) * (end_.x - start_.x) +
-                        (end_.y - start_.y) * (end_.y - start_.y));
+    ++tally_.segments;
+    set_segment(end_, path_->points[to]);
+    bool done = march_to_end();
+    // Where snapping led into a dead end, the rest of the segment goes straight.
+    if (!done && snap_ > 0.0 && error_ &&
+        (error_->code == ErrorCode::NotRepresentable || error_->code == ErrorCode::StepBudget)) {
+        error_.reset();
+        set_snap(0.0);
+        steps_ = 0;
+        done = march_to_end();
+    }
+    // A ring that snapped ends where it began, not at another vertex within snap of that.
+    if (done && to == 0 && at_.valid() && first_.valid() && at_ != first_) {
+        const Point2 end = end_;
+        set_snap(0.0);
+        set_segment(tin_.plan(at_), tin_.plan(first_));
+        from_ = to_;
+        done = march_to_end();
+        end_ = end;
+    }
+    set_snap(options_.snap);
+    return done;
+}
+
+void March::set_segment(Point2 start, Point2 end) {
+    start_ = start;
+    end_ = end;
+    length_ =
+        std::sqrt((end.x - start.x) * (end.x - start.x) + (end.y - start.y) * (end.y - start.y));
     steps_ = 0;
     boundary_visits_.clear();
     entries_known_ = false;
     spent_edges_.clear();
-    ++tally_.segments;
+}
+
+bool March::march_to_end() {
     if (!within_budget()) return false;
     while (true) {
         if (!at_.valid() && !enter()) return !error_ && is_as_promised();
@@ -88,9 +122,8 @@ bool March::advance(std::size_t to) {
 bool March::has_arrived() const {
     const Point2 p = tin_.plan(at_);
     if (p == end_) return true;
-    if (!(options_.snap > 0.0)) return false;
-    return (p.x - end_.x) * (p.x - end_.x) + (p.y - end_.y) * (p.y - end_.y) <=
-           options_.snap * options_.snap;
+    if (!(snap_ > 0.0)) return false;
+    return (p.x - end_.x) * (p.x - end_.x) + (p.y - end_.y) * (p.y - end_.y) <= snap_ * snap_;
 }
 
 bool March::finish() {
@@ -137,8 +170,7 @@ bool March::cross(Side exit) {
         needs_swaps = true;
         const Side entry = tin_.twin(exit);
         const VertexId apex = tin_.apex(entry);
-        if (options_.snap > 0.0 && is_ahead_within_snap(apex) && has_way(apex))
-            return connect(apex);
+        if (snap_ > 0.0 && is_ahead_within_snap(apex) && has_way(apex)) return connect(apex);
         switch (orientation(tin_.plan(at_), end_, tin_.plan(apex))) {
             case Collinear:
                 if (tin_.plan(apex) != end_ && is_ahead(tin_.plan(apex), tin_.plan(at_), end_))

@@ -83,6 +83,9 @@ class March {
 
   private:
     // march.cpp
+    void set_snap(double snap);
+    void set_segment(Point2 start, Point2 end);
+    bool march_to_end();
     bool has_arrived() const;
     bool is_as_promised();
     bool follow(const Departure& departure);
@@ -150,6 +153,7 @@ class March {
     const IntegrateOptions& options_;
     const MarchLimits& limits_;
     double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
+    double snap_;               ///< of this segment
     double near_;               ///< what is nearer is one: half of that, or the snap
     MarchTally tally_;
     std::optional<Error> error_;
@@ -160,8 +164,9 @@ class March {
     std::size_t path_index_ = 0;
     std::size_t from_ = 0;  ///< the input segment's points in the path
     std::size_t to_ = 0;
-    VertexId at_;   ///< where the march stands; invalid: outside the mesh
-    Point2 start_;  ///< the input segment
+    VertexId first_;  ///< where the path began; invalid: outside the mesh
+    VertexId at_;     ///< where the march stands; invalid: outside the mesh
+    Point2 start_;    ///< the input segment
     Point2 end_;
     double length_ = 0.0;
     std::uint64_t steps_ = 0;

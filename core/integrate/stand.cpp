@@ -27,7 +27,7 @@ Point2 nearest_on(Point2 a, Point2 b, Point2 p) {
 /// Makes an input position, located in a triangle or on an edge, a vertex; or takes the vertex or
 /// the place on an edge between facets that is within snap of it.
 VertexId March::settle(const Location& location, Point2 p) {
-    if (options_.snap > 0.0 && location.kind != Location::Kind::OnVertex) {
+    if (snap_ > 0.0 && location.kind != Location::Kind::OnVertex) {
         if (const auto vertex = vertex_within_snap(location, p)) return *vertex;
         if (const auto found = edge_within_snap(location, p))
             return place({Location::Kind::OnEdge, found->first, {}}, found->second);
@@ -38,7 +38,7 @@ VertexId March::settle(const Location& location, Point2 p) {
 /// The nearest corner of the triangles that the location is in.
 std::optional<VertexId> March::vertex_within_snap(const Location& location, Point2 p) const {
     std::optional<VertexId> nearest;
-    double least = options_.snap * options_.snap;
+    double least = snap_ * snap_;
     for (const Side side : {location.side, tin_.twin(location.side)}) {
         if (!side.valid()) continue;
         for (const VertexId v : tin_.triangle(side.triangle()).vertices) {
@@ -57,7 +57,7 @@ std::optional<std::pair<Side, Point2>> March::edge_within_snap(const Location& l
                                                                Point2 p) const {
     if (location.kind != Location::Kind::InTriangle) return {};
     std::optional<std::pair<Side, Point2>> nearest;
-    double least = options_.snap * options_.snap;
+    double least = snap_ * snap_;
     for (unsigned i = 0; i < 3; ++i) {
         const Side side(location.side.triangle(), i);
         if (!tin_.is_fixed(side) && !tin_.separates_facets(side)) continue;
