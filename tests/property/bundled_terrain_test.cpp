@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guarantees on the bundled terrain with each bundled polygon, by the independent oracle:
-// 100,000 random positions, all vertices of the old and of the new mesh.
+// The guarantees on the bundled terrain with each bundled polygon, by the independent verifier.
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -52,14 +51,14 @@ TEST_P(BundledTerrain, GuaranteesHold) {
         shapes.push_back(requested.shape);
     auto tin = core::build_tin(terrain());
     ASSERT_TRUE(tin);
-    const test::SurfaceOracle before(terrain());
+    verify::Verifier verifier(terrain());
 
     core::IntegrateOptions options;
     options.improve = GetParam().improve;
     const auto report = core::integrate(*tin, shapes, options);
     ASSERT_TRUE(report) << report.errors()[0].detail;
 
-    const auto broken = test::check_guarantees({before, *tin, shapes, *report}, 100'000, 1);
+    const auto broken = test::check_guarantees(verifier, {shapes, options, *report, *tin});
     for (std::size_t i = 0; i < broken.size() && i < 10; ++i)
         ADD_FAILURE() << broken[i];
     const core::ShapeReport& shape = report->shapes.at(0);

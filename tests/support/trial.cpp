@@ -23,10 +23,6 @@ bool same_bytes(const MeshData& a, const MeshData& b) {
            same(a.constraints, b.constraints);
 }
 
-void append(std::vector<std::string>& to, std::vector<std::string> more) {
-    to.insert(to.end(), more.begin(), more.end());
-}
-
 }  // namespace
 
 std::string Verdict::kind() const {
@@ -35,34 +31,30 @@ std::string Verdict::kind() const {
 
 Trial::Trial(const MeshData& mesh, Leniency leniency) : leniency_(leniency) {
     auto built = core::build_tin(mesh);
-    if (built)
-        tin_ = std::move(*built);
-    else
+    if (!built) {
         broken_.push_back("MESH was refused: " + built.errors()[0].detail);
+        return;
+    }
+    tin_ = std::move(*built);
+    verifier_.emplace(tin_->to_data());
 }
 
 Verdict Trial::apply(const Request& request) {
     Verdict verdict;
-    const MeshData before = tin_->to_data();
     const auto report = core::integrate(*tin_, request.shapes, request.options);
     if (!report) {
         verdict.refused = true;
         const ErrorCode code = report.errors()[0].code;
         verdict.unrepresentable = code == ErrorCode::NotRepresentable && leniency_.unrepresentable;
-        if (!same_bytes(before, tin_->to_data()))
+        if (!same_bytes(verifier_->mesh(), tin_->to_data()))
             verdict.broken.push_back("G6 a refused request changed the mesh");
         else if (code != ErrorCode::OutsideMesh && !verdict.unrepresentable)
             verdict.broken.push_back(std::string(code_name(code)) + ": " +
                                      report.errors()[0].detail);
         return verdict;
     }
-    const SurfaceOracle oracle(before);
-    const Operation operation{oracle, *tin_, request.shapes, *report};
-    append(verdict.broken, check_valid(*tin_));
-    append(verdict.broken, check_shape_kept(operation, 200, 1));
-    append(verdict.broken, check_integrated(operation));
-    // Facets outlive requests, so only the first one meets the mesh's edges and nothing else.
-    if (applied_++ == 0) append(verdict.broken, check_economical(operation, leniency_.forced));
+    verdict.broken = check_guarantees(*verifier_, {request.shapes, request.options, *report, *tin_},
+                                      leniency_.forced);
     return verdict;
 }
 

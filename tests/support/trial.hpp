@@ -7,6 +7,7 @@
 
 #include "core/mesh/tin.hpp"
 #include "tests/support/case_file.hpp"
+#include "tests/verify/verifier.hpp"
 
 namespace tinsmith::test {
 
@@ -33,13 +34,13 @@ class Trial {
     Trial(const core::MeshData& mesh, Leniency leniency);
 
     const std::vector<std::string>& broken() const { return broken_; }
-    core::MeshData mesh() const { return tin_->to_data(); }
+    const core::MeshData& mesh() const { return verifier_->mesh(); }
     Verdict apply(const Request& request);
 
   private:
     std::optional<core::Tin> tin_;
+    std::optional<verify::Verifier> verifier_;
     Leniency leniency_;
-    std::size_t applied_ = 0;  ///< requests that were not refused
     std::vector<std::string> broken_;
 };
 

@@ -99,27 +99,19 @@ struct Outcome {
 
 /// `fresh`: the mesh was not edited before, so that new vertices can be counted as well.
 inline Outcome integrate_checked(core::Tin& tin, const std::vector<core::Shape>& shapes,
-                                 const core::IntegrateOptions& options = {}, bool fresh = true,
-                                 std::size_t samples = 50) {
+                                 const core::IntegrateOptions& options = {}, bool fresh = true) {
     Outcome outcome;
-    const SurfaceOracle before(tin.to_data());
+    verify::Verifier verifier(tin.to_data());
     const auto report = core::integrate(tin, shapes, options);
     if (!report) {
         outcome.broken = std::string(core::code_name(report.errors()[0].code)) + ": " +
                          report.errors()[0].detail;
-        if (!same_bytes(before.mesh(), tin.to_data())) outcome.broken += "; the mesh changed";
+        if (!same_bytes(verifier.mesh(), tin.to_data())) outcome.broken += "; the mesh changed";
         return outcome;
     }
     outcome.report = *report;
-    const Operation operation{before, tin, shapes, *report};
-    std::vector<std::string> broken = check_valid(tin);
-    for (auto& more : check_shape_kept(operation, samples, 1))
-        broken.push_back(more);
-    for (auto& more : check_integrated(operation))
-        broken.push_back(more);
-    if (fresh)
-        for (auto& more : check_economical(operation, 0))
-            broken.push_back(more);
+    const auto broken =
+        check_guarantees(verifier, {shapes, options, *report, tin}, fresh ? 0 : verify::kUncounted);
     for (std::size_t i = 0; i < broken.size() && i < 5; ++i)
         outcome.broken += broken[i] + "\n";
     return outcome;

@@ -57,7 +57,7 @@ class Tries {
         IntegrateOptions options;
         options.improve = count_++ % 3 == 0 ? Improve::None : Improve::Strict;
         Tin tin = mesh_;
-        const auto outcome = test::integrate_checked(tin, shapes, options, !rough_, 0);
+        const auto outcome = test::integrate_checked(tin, shapes, options, !rough_);
         if (rough_ && outcome.broken.starts_with("NOT_REPRESENTABLE") &&
             !outcome.broken.ends_with("changed")) {
             ++refused_;
@@ -179,7 +179,7 @@ TEST_P(Lattice, LongSequencesOfSegmentsOnOneMesh) {
             };
             const Point2 a = point(), b = point(), c = point();
             const auto outcome =
-                test::integrate_checked(tin, {test::line({a, b, c})}, {}, false, 20);
+                test::integrate_checked(tin, {test::line({a, b, c})}, {}, false);
             if (outcome.broken.starts_with("OUTSIDE_MESH")) continue;
             if (outcome.broken.starts_with("NOT_REPRESENTABLE") &&
                 !outcome.broken.ends_with("changed")) {

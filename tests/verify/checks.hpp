@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/verify/edit.hpp"
+
+namespace tinsmith::verify {
+
+// Each check returns what is broken, in words; nothing when its guarantee holds. They read plain
+// buffers, none of the core's structure or predicates. The later ones require the earlier ones.
+
+/// All indices name vertices; coordinates are finite. What `Snapshot` requires.
+Faults check_indices(const core::MeshData& mesh);
+
+/// G1: triangles strictly counter-clockwise; each directed edge of one triangle at most; one fan
+/// around each vertex; none unreferenced; constraints are edges, each once.
+Faults check_validity(const Snapshot& mesh);
+
+/// What changed between two meshes, by slot.
+struct Change {
+    std::vector<std::uint32_t> removed;  ///< old triangles whose slot has other vertices now
+    std::vector<std::uint32_t> added;    ///< new triangles, in those slots and after
+    std::vector<bool> was_removed;       ///< by old slot
+};
+
+/// G2 and G4, the plan: old vertices stay; the new triangles cover exactly what the removed ones
+/// did, each place once, but for outline edges a-b that became chains from a to b within rounding.
+/// Why that suffices: positive triangles cover each place as often as their outline winds round it,
+/// and both outlines are compared edge by edge. Fills `change`.
+Faults check_coverage(const Edit& edit, Change& change);
+
+/// G2, the elevations: the vertical distance of two piecewise linear surfaces is greatest at a
+/// vertex of one or where two of their edges cross; it is measured at all of those.
+Faults check_surface(const Edit& edit, const Change& change);
+
+/// G3: each segment is covered by chains of constrained edges wherever it is on the mesh, and so is
+/// each constraint from before; no other edge is constrained.
+Faults check_chains(const Edit& edit);
+
+/// For `forced`: vertices are not counted.
+inline constexpr std::size_t kUncounted = SIZE_MAX;
+
+/// G8: new vertices since `origin` are at distinct points of the shapes given since, or where
+/// their segments cross edges of `origin` or each other; at each such place no more than there are
+/// reasons. `forced` more are let pass at a place.
+Faults check_economy(const Snapshot& origin, const core::MeshData& after,
+                     std::span<const core::Shape> shapes, double reach, std::size_t forced);
+
+}  // namespace tinsmith::verify

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tests/verify/checks.hpp"
+
+namespace tinsmith::verify {
+
+namespace {
+
+/// A position that is, or calls for, a vertex. What is nearer than `radius` may be one with it.
+struct Place {
+    enum class Kind { OldVertex, Event, NewVertex };
+    Point2 p;
+    Kind kind;
+    double radius;
+};
+
+/// An edge of the mesh or a segment, left end first; the same one in either direction is equal.
+struct Line {
+    Point2 a;
+    Point2 b;
+    Line(Point2 p, Point2 q) : a(p), b(q) {
+        if (b.x < a.x || (b.x == a.x && b.y < a.y)) std::swap(a, b);
+    }
+    std::array<double, 4> key() const { return {a.x, a.y, b.x, b.y}; }
+    bool is_box_near(const Line& other) const {
+        const auto [low, high] = std::minmax(a.y, b.y);
+        const auto [other_low, other_high] = std::minmax(other.a.y, other.b.y);
+        return a.x <= other.b.x && other.a.x <= b.x && low <= other_high && other_low <= high;
+    }
+};
+
+/// Each once, by the x of the left end.
+void sort_out(std::vector<Line>& lines) {
+    std::sort(lines.begin(), lines.end(),
+              [](const Line& l, const Line& r) { return l.key() < r.key(); });
+    lines.erase(std::unique(lines.begin(), lines.end(),
+                            [](const Line& l, const Line& r) { return l.key() == r.key(); }),
+                lines.end());
+}
+
+/// The place where two lines cross. Where they are almost parallel rounding moves it along them:
+/// the radius says how far.
+Place crossing(const Line& s, const Line& e, double reach) {
+    const double sx = s.b.x - s.a.x, sy = s.b.y - s.a.y;
+    const double ex = e.b.x - e.a.x, ey = e.b.y - e.a.y;
+    const double sine = std::fabs(doubled_area({0, 0}, {sx, sy}, {ex, ey})) /
+                        (std::hypot(sx, sy) * std::hypot(ex, ey));
+    return {crossing_point(s.a, s.b, e.a, e.b), Place::Kind::Event, reach / sine};
+}
+
+void add_crossings(const std::vector<Line>& segments, const Snapshot& origin, double reach,
+                   std::vector<Place>& places) {
+    std::vector<Line> edges;
+    edges.reserve(origin.data.triangles.size() * 2);
+    for (const auto& t : origin.data.triangles)
+        for (unsigned i = 0; i < 3; ++i)
+            if (t[i] < t[(i + 1) % 3] || origin.stars.triangle_of(t[(i + 1) % 3], t[i]) == kNone)
+                edges.emplace_back(origin.data.vertices[t[i]].plan(),
+                                   origin.data.vertices[t[(i + 1) % 3]].plan());
+    std::sort(edges.begin(), edges.end(),
+              [](const Line& l, const Line& r) { return l.a.x < r.a.x; });
+    double longest = 0.0;
+    for (const Line& e : edges)
+        longest = std::max(longest, e.b.x - e.a.x);
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        const Line& s = segments[k];
+        auto e = std::lower_bound(edges.begin(), edges.end(), s.a.x - longest,
+                                  [](const Line& l, double x) { return l.a.x < x; });
+        for (; e != edges.end() && e->a.x <= s.b.x; ++e)
+            if (s.is_box_near(*e) && cross_properly(s.a, s.b, e->a, e->b))
+                places.push_back(crossing(s, *e, reach));
+        for (std::size_t m = k + 1; m < segments.size() && segments[m].a.x <= s.b.x; ++m) {
+            const Line& other = segments[m];
+            if (!s.is_box_near(other) || !cross_properly(s.a, s.b, other.a, other.b)) continue;
+            const Place place = crossing(s, other, reach);
+            if (origin.grid.holds(place.p, place.radius)) places.push_back(place);
+        }
+    }
+}
+
+/// Groups of places that may be one position, as runs of `order`.
+class Clusters {
+  public:
+    explicit Clusters(std::vector<Place>& places) : places_(places), taken_(places.size(), false) {
+        std::sort(places.begin(), places.end(), [](const Place& l, const Place& r) {
+            return l.p.x != r.p.x ? l.p.x < r.p.x : l.p.y < r.p.y;
+        });
+        for (const Place& place : places)
+            widest_ = std::max(widest_, place.radius);
+    }
+
+    /// The places near the first that is in no cluster yet, and all near those; empty at the end.
+    const std::vector<std::size_t>& next() {
+        cluster_.clear();
+        while (at_ < places_.size() && (taken_[at_] || places_[at_].kind == Place::Kind::OldVertex))
+            ++at_;
+        if (at_ == places_.size()) return cluster_;
+        take(at_);
+        for (std::size_t k = 0; k < cluster_.size(); ++k) {
+            const std::size_t here = cluster_[k];
+            const double x = places_[here].p.x;
+            for (std::size_t j = here; j-- > 0 && places_[j].p.x >= x - widest_;)
+                visit(here, j);
+            for (std::size_t j = here + 1; j < places_.size() && places_[j].p.x <= x + widest_; ++j)
+                visit(here, j);
+        }
+        return cluster_;
+    }
+
+  private:
+    void take(std::size_t i) {
+        taken_[i] = true;
+        cluster_.push_back(i);
+    }
+    void visit(std::size_t here, std::size_t j) {
+        if (taken_[j]) return;
+        const Place &l = places_[here], &r = places_[j];
+        const double radius = std::max(l.radius, r.radius);
+        const double dx = r.p.x - l.p.x, dy = r.p.y - l.p.y;
+        if (std::fabs(dx) <= radius && std::fabs(dy) <= radius && std::hypot(dx, dy) <= radius)
+            take(j);
+    }
+
+    std::vector<Place>& places_;
+    std::vector<bool> taken_;
+    double widest_ = 0.0;
+    std::size_t at_ = 0;
+    std::vector<std::size_t> cluster_;
+};
+
+}  // namespace
+
+Faults check_economy(const Snapshot& origin, const core::MeshData& after,
+                     std::span<const core::Shape> shapes, double reach, std::size_t forced) {
+    std::vector<Place> places;
+    std::vector<Line> points, segments;
+    for (const auto& shape : shapes)
+        for (const auto& path : shape.paths)
+            for (const Point2 p : path.points)
+                points.emplace_back(p, p);
+    sort_out(points);
+    for (const Line& p : points)
+        if (origin.grid.holds(p.a, reach)) places.push_back({p.a, Place::Kind::Event, reach});
+    for (const Segment& s : segments_of(shapes))
+        segments.emplace_back(s.a, s.b);
+    sort_out(segments);
+    add_crossings(segments, origin, reach, places);
+    for (std::size_t v = 0; v < after.vertices.size(); ++v)
+        places.push_back(
+            {after.vertices[v].plan(),
+             v < origin.data.vertices.size() ? Place::Kind::OldVertex : Place::Kind::NewVertex,
+             reach});
+    Faults faults;
+    Clusters clusters(places);
+    for (;;) {
+        const auto& cluster = clusters.next();
+        if (cluster.empty()) return faults;
+        std::size_t old = 0, events = 0, added = 0;
+        for (const std::size_t i : cluster) {
+            old += places[i].kind == Place::Kind::OldVertex;
+            events += places[i].kind == Place::Kind::Event;
+            added += places[i].kind == Place::Kind::NewVertex;
+        }
+        if (added > events + forced)
+            faults.push_back(words("G8 at ", places[cluster[0]].p.x, " ", places[cluster[0]].p.y,
+                                   ": ", events, " reasons, ", old, " old and ", added,
+                                   " new vertices"));
+    }
+}
+
+}  // namespace tinsmith::verify

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/verify/verifier.hpp"
+
+#include <algorithm>
+
+namespace tinsmith::verify {
+
+namespace {
+
+void append(Faults& to, Faults more) {
+    std::move(more.begin(), more.end(), std::back_inserter(to));
+}
+
+}  // namespace
+
+Verifier::Verifier(core::MeshData mesh)
+    : origin_(std::make_shared<Snapshot>(std::move(mesh))), now_(origin_) {}
+
+Faults Verifier::faults_of(const core::MeshData& mesh) {
+    Faults faults = check_indices(mesh);
+    if (faults.empty()) faults = check_validity(Snapshot(mesh));
+    return faults;
+}
+
+Faults Verifier::step(core::MeshData after, std::span<const core::Shape> shapes,
+                      const core::IntegrateOptions& options, double certified, std::size_t forced) {
+    if (Faults faults = check_indices(after); !faults.empty()) return faults;
+    const auto next = std::make_shared<const Snapshot>(std::move(after));
+    Faults faults = check_validity(*next);
+    if (!faults.empty()) return faults;
+    const Edit edit{*now_, *next, shapes, options, certified};
+    Change change;
+    faults = check_coverage(edit, change);
+    if (faults.empty()) append(faults, check_surface(edit, change));
+    append(faults, check_chains(edit));
+    // Facets outlive requests, so the mesh's edges are those of the first mesh, and the segments
+    // all that were given since.
+    all_.insert(all_.end(), shapes.begin(), shapes.end());
+    widest_reach_ = std::max(widest_reach_, 2 * chain_reach(edit));
+    if (forced != kUncounted)
+        append(faults, check_economy(*origin_, next->data, all_, widest_reach_, forced));
+    now_ = next;
+    return faults;
+}
+
+}  // namespace tinsmith::verify
