@@ -14,21 +14,62 @@ namespace tinsmith::api {
 
 namespace {
 
+struct OptionRow {
+    std::string_view name;
+    std::string_view values;  ///< that it takes, for people
+};
+
+constexpr std::array kPolygonTable{
+    OptionRow{"elevation", "drape or own"},
+    OptionRow{"on_crossing", "new or old"},
+    OptionRow{"improve", "none, strict, paper or bounded"},
+    OptionRow{"max_deviation", "a height above 0 in the session's unit"},
+    OptionRow{"snap", "a distance of 0 or more in the session's unit"},
+    OptionRow{"outside", "skip or reject"},
+    OptionRow{"winding", "evenodd or nonzero"},
+    OptionRow{"lock", "true or false"},
+    OptionRow{"crs", "a name such as EPSG:32616"},
+    OptionRow{"dry_run", "true or false"},
+};
+
+constexpr std::array kMeshTable{
+    OptionRow{"compression", "draco or none"},
+    OptionRow{"tolerance", "a length in metres above 0 and up to 1000"},
+    OptionRow{"up", "y or z"},
+    OptionRow{"constraints", "true or false"},
+    OptionRow{"normals", "true or false"},
+    OptionRow{"regions", "false"},
+    OptionRow{"bbox", "no such parameter: the whole mesh"},
+    OptionRow{"version", "no such parameter: the mesh as it is now"},
+};
+
+template <std::size_t Count>
+constexpr auto names_of(const std::array<OptionRow, Count>& table) {
+    std::array<std::string_view, Count> names;
+    for (std::size_t i = 0; i < Count; ++i)
+        names[i] = table[i].name;
+    return names;
+}
+
+constexpr auto kPolygonNames = names_of(kPolygonTable);
+constexpr auto kMeshNames = names_of(kMeshTable);
+
 /// Collects faults of options; remembers whether all of them are only "not yet".
 class OptionFaults {
   public:
     void add_unknown(const NamedOption& option, std::span<const std::string_view> known) {
         add("UNKNOWN_OPTION", option, " is not known here; known are: " + listed(known) + ".");
     }
-    void add_invalid(const NamedOption& option, std::string_view allowed) {
+    void add_invalid(const NamedOption& option) {
         add("INVALID_OPTION", option,
-            " cannot be \"" + option.value + "\": give " + std::string(allowed) + ".");
+            " cannot be \"" + option.value + "\": give " + std::string(option_values(option.name)) +
+                ".");
     }
-    void add_unavailable(const NamedOption& option, std::string_view allowed) {
+    void add_unavailable(const NamedOption& option) {
         const bool all_were = all_unavailable_;
         add("NOT_AVAILABLE", option,
-            "=" + option.value + " is not available in this version: give " + std::string(allowed) +
-                ".");
+            "=" + option.value + " is not available in this version: give " +
+                std::string(option_values(option.name)) + ".");
         all_unavailable_ = all_were;
     }
     void add_contradiction(const NamedOption& option) {
@@ -90,35 +131,27 @@ void read_bool(const NamedOption& option, bool& target, OptionFaults& faults) {
     if (option.value == "true" || option.value == "false") {
         target = option.value == "true";
     } else {
-        faults.add_invalid(option, "true or false");
+        faults.add_invalid(option);
     }
 }
 
-constexpr std::array<std::string_view, 10> kPolygonOptions{
-    "elevation", "on_crossing", "improve", "max_deviation", "snap",
-    "outside",   "winding",     "lock",    "crs",           "dry_run"};
-
-/// The choice of that word; a fault that lists all of them where there is none.
+/// The choice of that word.
 template <typename Choice>
 void read_choice(const NamedOption& option,
                  std::initializer_list<std::pair<std::string_view, Choice>> choices, Choice& out,
                  OptionFaults& faults) {
-    std::string words;
     for (const auto& [word, choice] : choices) {
-        if (option.value == word) {
-            out = choice;
-            return;
-        }
-        words += words.empty() ? "" : " or ";
-        words += word;
+        if (option.value != word) continue;
+        out = choice;
+        return;
     }
-    faults.add_invalid(option, words);
+    faults.add_invalid(option);
 }
 
 void read_snap(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
     const auto snap = parse_number(option.value);
     if (!snap || *snap < 0.0) {
-        return faults.add_invalid(option, "a distance of 0 or more in the session's unit");
+        return faults.add_invalid(option);
     }
     out.integrate.snap = *snap + 0.0;  // of the two noughts the positive one
 }
@@ -126,14 +159,14 @@ void read_snap(const NamedOption& option, PolygonOptions& out, OptionFaults& fau
 void read_max_deviation(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
     const auto most = parse_number(option.value);
     if (!most || *most <= 0.0) {
-        return faults.add_invalid(option, "a height above 0 in the session's unit");
+        return faults.add_invalid(option);
     }
     out.integrate.max_deviation = *most;
 }
 
 void read_crs(const NamedOption& option, PolygonOptions& out, OptionFaults& faults) {
     const auto crs = normalise_crs(option.value);
-    if (!crs) return faults.add_invalid(option, "a name such as EPSG:32616");
+    if (!crs) return faults.add_invalid(option);
     out.crs = *crs;
 }
 
@@ -166,7 +199,7 @@ void read_polygon_option(const NamedOption& option, PolygonOptions& out, OptionF
     } else if (option.name == "dry_run") {
         read_bool(option, out.dry_run, faults);
     } else {
-        faults.add_unknown(option, kPolygonOptions);
+        faults.add_unknown(option, kPolygonNames);
     }
 }
 
@@ -208,13 +241,10 @@ bool is_repeated(std::span<const NamedOption> options, std::size_t i, OptionFaul
     return false;
 }
 
-constexpr std::array<std::string_view, 8> kMeshOptions{
-    "compression", "tolerance", "up", "constraints", "normals", "regions", "bbox", "version"};
-
 void read_regions(const NamedOption& option, OptionFaults& faults) {
     bool regions = false;
     read_bool(option, regions, faults);
-    if (regions) faults.add_unavailable(option, "false");
+    if (regions) faults.add_unavailable(option);
 }
 
 void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults& faults) {
@@ -222,22 +252,22 @@ void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults&
         if (is_one_of(option.value, {"draco", "none"})) {
             out.compression = option.value == "draco" ? Compression::Draco : Compression::None;
         } else if (option.value == "meshopt") {
-            faults.add_unavailable(option, "draco or none");
+            faults.add_unavailable(option);
         } else {
-            faults.add_invalid(option, "draco or none");
+            faults.add_invalid(option);
         }
     } else if (option.name == "tolerance") {
         const auto value = parse_number(option.value);
         if (value && *value > 0.0 && *value <= 1000.0) {
             out.tolerance = *value;
         } else {
-            faults.add_invalid(option, "a length in metres above 0 and up to 1000");
+            faults.add_invalid(option);
         }
     } else if (option.name == "up") {
         if (is_one_of(option.value, {"y", "z"})) {
             out.up = option.value == "z" ? UpAxis::Z : UpAxis::Y;
         } else {
-            faults.add_invalid(option, "y or z");
+            faults.add_invalid(option);
         }
     } else if (option.name == "constraints") {
         read_bool(option, out.constraints, faults);
@@ -246,9 +276,9 @@ void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults&
     } else if (option.name == "regions") {
         read_regions(option, faults);
     } else if (is_one_of(option.name, {"bbox", "version"})) {
-        faults.add_unavailable(option, "no such parameter: the whole mesh as it is now");
+        faults.add_unavailable(option);
     } else {
-        faults.add_unknown(option, kMeshOptions);
+        faults.add_unknown(option, kMeshNames);
     }
 }
 
@@ -258,22 +288,33 @@ std::string_view winding_name(Winding winding) {
     return winding == Winding::NonZero ? "nonzero" : "evenodd";
 }
 
+std::string_view option_values(std::string_view name) {
+    for (const OptionRow& row : kPolygonTable) {
+        if (row.name == name) return row.values;
+    }
+    for (const OptionRow& row : kMeshTable) {
+        if (row.name == name) return row.values;
+    }
+    return {};
+}
+
 std::span<const std::string_view> polygon_option_names() {
-    return kPolygonOptions;
+    return kPolygonNames;
 }
 
 std::span<const std::string_view> mesh_option_names() {
-    return kMeshOptions;
+    return kMeshNames;
 }
 
-Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options) {
+Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options,
+                                             OptionList list) {
     PolygonOptions out;
     OptionFaults faults;
     for (std::size_t i = 0; i < options.size(); ++i) {
         if (is_repeated(options, i, faults)) continue;
         read_polygon_option(options[i], out, faults);
     }
-    check_pairs(options, out, faults);
+    if (list == OptionList::Whole) check_pairs(options, out, faults);
     if (!faults.empty()) {
         const FaultKind kind = faults.kind();
         return {kind, faults.take()};

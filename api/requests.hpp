@@ -39,9 +39,17 @@ struct PolygonOptions {
 /// The options of a polygons request by name.
 std::span<const std::string_view> polygon_option_names();
 
+/// Whether options are all that there will be, or others may follow from another place.
+enum class OptionList { Whole, Part };
+
 /// Reads the options of a polygons request. An option that is given twice, in the query and in the
-/// body, must say the same both times; one that has no meaning without another needs that too.
-Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options);
+/// body, must say the same both times; one that has no meaning without another needs that too,
+/// which a part of the list is not asked for.
+Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options,
+                                             OptionList list = OptionList::Whole);
+
+/// What an option of a polygons or mesh request takes, for people: "drape or own".
+std::string_view option_values(std::string_view name);
 
 /// The query parameters of a mesh request, granted or not.
 std::span<const std::string_view> mesh_option_names();

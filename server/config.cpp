@@ -36,7 +36,7 @@ constexpr const char* kIntegrateFooter =
     "terrain's coordinates.\n\n"
     "Examples:\n"
     "  tinsmith integrate terrain.tif lake.geojson -o out.glb --report report.json\n"
-    "  tinsmith integrate mesh.json road.geojson -o out.glb --improve none --outside reject";
+    "  tinsmith integrate mesh.json road.geojson -o out.glb --elevation own --snap 0.05";
 
 /// "max_body_bytes" as a flag, "--max-body-bytes".
 std::string flag_of(std::string name) {
@@ -125,7 +125,7 @@ void add_request_options(CLI::App& app, std::span<const std::string_view> names,
                [&out, key](const std::string& value) {
                    out.push_back({key, value, {}});
                },
-               "As " + key + "= of the request")
+               "Takes " + std::string(api::option_values(name)))
             ->group(group);
     }
 }

@@ -101,7 +101,8 @@ int run_integrate(const IntegrateConfig& config) {
     auto mesh_options = api::parse_mesh_options(config.mesh_options);
     if (!mesh_options) complain("options", mesh_options.faults());
     // Judged once more with the polygons, which may bring options along; by then it is late.
-    const auto polygon_options = api::parse_polygon_options(config.polygon_options);
+    const auto polygon_options =
+        api::parse_polygon_options(config.polygon_options, api::OptionList::Part);
     if (!polygon_options) complain("options", polygon_options.faults());
     if (!mesh_options || !polygon_options) return kExitUsage;
     if (config.output == config.report) {

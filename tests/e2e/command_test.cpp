@@ -88,6 +88,30 @@ TEST_F(Command, JudgesOptionsBeforeItWorks) {
     EXPECT_NE(output.find("one file"), std::string::npos) << output;
 }
 
+TEST_F(Command, TakesOptionsFromFlagsAndFile) {
+    const std::string terrain = scratch.file("terrain.json");
+    write_content(terrain, R"({"mesh": {"vertices": [[0,0,0],[10,0,1],[10,10,2],[0,10,3]],
+                                        "triangles": [[0,1,2],[0,2,3]]}})");
+    const std::string polygons = scratch.file("pad.json");
+    write_content(polygons, R"({"type": "Polygon", "tinsmith": {"elevation": "own"},
+        "coordinates": [[[2,1,5],[5,1,5],[5,4,5],[2,4,5],[2,1,5]]]})");
+    const std::string report = scratch.file("report.json");
+    const std::vector<std::string> start{
+        "integrate", terrain, polygons, "-o", scratch.file("out.glb"), "--report", report};
+    const auto with = [&start](std::vector<std::string> flags) {
+        flags.insert(flags.begin(), start.begin(), start.end());
+        return flags;
+    };
+    EXPECT_EQ(run(with({"--on-crossing", "old", "--lock", "true", "--snap", "0.01"})), 0) << output;
+    EXPECT_GT(json::parse(content_of(report))["polygons"][0]["max_elevation_change"], 4.0);
+    EXPECT_EQ(run(with({"--elevation", "drape"})), 1);
+    EXPECT_NE(output.find("/tinsmith/elevation: CONTRADICTION"), std::string::npos) << output;
+    EXPECT_EQ(run(with({"--improve", "bounded"})), 1);
+    EXPECT_NE(output.find("improve=bounded needs max_deviation"), std::string::npos) << output;
+    EXPECT_EQ(run(with({"--improve", "bounded", "--max-deviation", "0"})), 2);
+    EXPECT_NE(output.find("max_deviation cannot be \"0\""), std::string::npos) << output;
+}
+
 TEST_F(Command, ChecksMeshes) {
     const std::string good = scratch.file("good.json");
     write_content(good, R"({"mesh": {"vertices": [[0,0,0],[1,0,0],[0,1,0]],

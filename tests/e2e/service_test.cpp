@@ -190,6 +190,40 @@ TEST_F(Service, EditsAMeshFromEndToEnd) {
     EXPECT_NE(glb.header("tinsmith-max-error"), "");
 }
 
+TEST_F(Service, HonoursTheOptionsOfPolygons) {
+    const std::string pad = R"({"type": "Polygon",
+        "coordinates": [[[2,1,50],[5,1,50],[5,4,50],[2,4,50],[2,1,50]]]})";
+    const auto cut = [&pad](const std::string& query) {
+        return ask(port(), "POST", make_session() + "/polygons" + query, {kJson}, pad);
+    };
+    for (const std::string query :
+         {"?elevation=own", "?elevation=own&on_crossing=old&lock=true",
+          "?improve=bounded&max_deviation=0.25&snap=0.125", "?improve=paper&winding=nonzero"}) {
+        const Answer done = cut(query);
+        ASSERT_EQ(done.status, 200) << query << ": " << done.body;
+        const bool is_own = query.find("own") != query.npos;
+        EXPECT_EQ(json::parse(done.body)["polygons"][0]["max_elevation_change"] > 40.0, is_own)
+            << done.body;
+    }
+    for (const std::string query : {"?on_crossing=old", "?improve=bounded", "?max_deviation=1",
+                                    "?snap=-1", "?winding=left", "?lock=perhaps"}) {
+        const Answer refused = cut(query);
+        expect_problem(refused, 400);
+        const std::string name = query.substr(1, query.find('=') - 1);
+        EXPECT_EQ(json::parse(refused.body)["errors"][0]["parameter"], name);
+    }
+}
+
+TEST_F(Service, WantsAllElevationsOrNone) {
+    const Answer refused = ask(port(), "POST", make_session() + "/polygons?elevation=own", {kJson},
+                               R"({"type": "LineString", "coordinates": [[1,1,5],[2,3],[4,4]]})");
+    expect_problem(refused, 422);
+    const json errors = json::parse(refused.body)["errors"];
+    ASSERT_EQ(errors.size(), 2U);
+    EXPECT_EQ(errors[0]["pointer"], "/coordinates/1");
+    EXPECT_EQ(errors[1]["pointer"], "/coordinates/2");
+}
+
 TEST_F(Service, KeepsEveryEditOfManyClients) {
     constexpr int kClients = 4;
     constexpr int kEdits = 10;

@@ -86,7 +86,7 @@ TEST(PolygonOptions, SayWhatToGiveInstead) {
     const auto parsed = polygon_options({{"improve", "best", ""}, {"winding", "x", ""}});
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.faults()[0].detail,
-              "improve cannot be \"best\": give none or strict or paper or bounded.");
+              "improve cannot be \"best\": give none, strict, paper or bounded.");
     EXPECT_EQ(parsed.faults()[1].detail, "winding cannot be \"x\": give evenodd or nonzero.");
 }
 
@@ -106,6 +106,14 @@ TEST(PolygonOptions, NeedTheOtherHalf) {
     EXPECT_EQ(parsed.faults()[1].pointer, "");
     EXPECT_EQ(parsed.faults()[1].parameter, "on_crossing");
     EXPECT_EQ(parsed.faults()[1].detail.substr(0, 32), "on_crossing needs elevation=own,");
+}
+
+TEST(PolygonOptions, MayFindTheirOtherHalfLater) {
+    const std::vector<NamedOption> part{{"on_crossing", "old", ""}, {"snap", "-1", ""}};
+    const auto parsed = parse_polygon_options(part, OptionList::Part);
+    ASSERT_FALSE(parsed);
+    ASSERT_EQ(parsed.faults().size(), 1U);
+    EXPECT_EQ(parsed.faults()[0].parameter, "snap");
 }
 
 TEST(PolygonOptions, BlameNoOptionForItsRefusedPartner) {
@@ -136,6 +144,14 @@ TEST(PolygonOptions, MayBeGivenTwiceIfTheyAgree) {
         polygon_options({{"improve", "none", ""}, {"improve", "strict", "/tinsmith/improve"}});
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.faults().front().code, "CONTRADICTION");
+}
+
+TEST(Options, AllSayWhatTheyTake) {
+    for (const std::string_view name : polygon_option_names())
+        EXPECT_NE(option_values(name), "") << name;
+    for (const std::string_view name : mesh_option_names())
+        EXPECT_NE(option_values(name), "") << name;
+    EXPECT_EQ(option_values("colour"), "");
 }
 
 TEST(MeshOptions, AreReadByName) {

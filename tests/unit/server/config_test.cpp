@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -97,6 +98,17 @@ TEST(CommandLine, ReadsIntegrate) {
     EXPECT_EQ(config.polygon_options[1].name, "dry_run");
     ASSERT_EQ(config.mesh_options.size(), 1U);
     EXPECT_EQ(config.mesh_options[0].value, "0.1");
+}
+
+TEST(CommandLine, TakesEveryOptionOfThePolygonsRequest) {
+    for (const std::string_view name : api::polygon_option_names()) {
+        std::string flag = "--" + std::string(name);
+        std::replace(flag.begin(), flag.end(), '_', '-');
+        const Command command =
+            parse({"integrate", "t.tif", "p.json", "-o", "out.glb", flag.c_str(), "x"});
+        ASSERT_TRUE(std::holds_alternative<IntegrateConfig>(command)) << flag;
+        EXPECT_EQ(std::get<IntegrateConfig>(command).polygon_options.at(0).name, name);
+    }
 }
 
 TEST(CommandLine, TakesTheEnvironmentToo) {
