@@ -41,6 +41,8 @@ std::string_view code_name(ErrorCode code) {
             return "LEAVES_MESH";
         case ErrorCode::NotRepresentable:
             return "NOT_REPRESENTABLE";
+        case ErrorCode::NoEdgeAlong:
+            return "NO_EDGE_ALONG";
         case ErrorCode::CrossingBudget:
             return "CROSSING_BUDGET";
         case ErrorCode::TriangleBudget:

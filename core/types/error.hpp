@@ -35,6 +35,7 @@ enum class ErrorCode {
     OutsideMesh = 401,       ///< nothing of the request meets the mesh
     LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that
     NotRepresentable = 403,  ///< no mesh of doubles holds the segment within the promised distance
+    NoEdgeAlong = 404,       ///< no edge of the mesh lies along the line
     // 500: budgets
     CrossingBudget = 501,  ///< more crossings than allowed
     TriangleBudget = 502,  ///< more new triangles than allowed
