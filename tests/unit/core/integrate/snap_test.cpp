@@ -20,13 +20,13 @@ using test::ring;
 ShapeReport snapped(Tin& tin, const Shape& shape, double snap) {
     IntegrateOptions options;
     options.snap = snap;
-    const test::SurfaceOracle before(tin.to_data());
+    verify::Verifier verifier(tin.to_data());
     const auto report = integrate(tin, {&shape, 1}, options);
     EXPECT_TRUE(report.ok()) << (report.ok() ? "" : report.errors()[0].detail);
     if (!report.ok()) return {};
     EXPECT_TRUE(check_tin(tin).empty());
-    const test::Operation operation{before, tin, {&shape, 1}, *report};
-    EXPECT_EQ(test::check_shape_kept(operation, 100, 1), std::vector<std::string>{});
+    const test::Operation operation{{&shape, 1}, options, *report, tin};
+    EXPECT_EQ(test::check_guarantees(verifier, operation), std::vector<std::string>{});
     EXPECT_LE(report->shapes[0].max_plan_deviation, snap);
     return report->shapes[0];
 }
@@ -94,7 +94,7 @@ TEST(Snap, RandomLinesOnRandomMeshesStayWithinIt) {
         IntegrateOptions options;
         options.snap = std::pow(10.0, -4.0 * unit(random)) * 0.3;
         const Shape shape = ring(points);
-        const test::SurfaceOracle before(tin.to_data());
+        verify::Verifier verifier(tin.to_data());
         const auto report = integrate(tin, {&shape, 1}, options);
         if (!report.ok()) {
             ++refused;
@@ -103,8 +103,8 @@ TEST(Snap, RandomLinesOnRandomMeshesStayWithinIt) {
         }
         EXPECT_TRUE(check_tin(tin).empty()) << i;
         EXPECT_LE(report->shapes[0].max_plan_deviation, options.snap) << i;
-        const test::Operation operation{before, tin, {&shape, 1}, *report};
-        EXPECT_EQ(test::check_shape_kept(operation, 50, 1), std::vector<std::string>{}) << i;
+        const test::Operation operation{{&shape, 1}, options, *report, tin};
+        EXPECT_EQ(test::check_guarantees(verifier, operation), std::vector<std::string>{}) << i;
         // Every input segment's ends are joined by the chain.
         EXPECT_EQ(report->shapes[0].chains.size(), 1u) << i;
         const auto& chain = report->shapes[0].chains[0].vertices;
