@@ -129,6 +129,25 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Generic,
                                                                                       : "Tangled");
                          });
 
+/// The peer that the benchmarks time keeps the surface, as recipe b claims.
+TEST(RecipeB, LeavesTheSurfaceAsItWas) {
+    const MeshData mesh = bundled_terrain();
+    const auto tin = core::build_tin(mesh);
+    ASSERT_TRUE(tin);
+    Peer peer = Peer::of_triangles(mesh);
+    EXPECT_EQ(peer.vertex_count(), mesh.vertices.size());
+    EXPECT_TRUE(peer.is_valid());
+    peer.insert(drape(*tin, bundled_shape("contour_3500")));
+    EXPECT_TRUE(peer.is_valid());
+    const std::vector<Point3> vertices = peer.vertices();
+    core::Path all;
+    for (const Point3& v : vertices)
+        all.points.push_back(v.plan());
+    const Polyline on_mesh = drape(*tin, {{all}}).at(0);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        ASSERT_NEAR(vertices[i].z, on_mesh[i].z, 1e-8);
+}
+
 /// Turned by the angle whose cosine is 3/5: what was on a grid line is so to within rounding.
 Point2 turned(Point2 p) {
     return {0.6 * p.x - 0.8 * p.y, 0.8 * p.x + 0.6 * p.y};
