@@ -9,6 +9,13 @@ namespace tinsmith::core {
 
 using enum Orientation;
 
+namespace {
+
+constexpr const char* kNoWay =
+    "rounding leaves no way along this segment within the promised distance; move it a little";
+
+}  // namespace
+
 /// Goes to vertex t by constrained edges: straight, by exact predicates on the vertices as they
 /// are. Vertices met on the way, and ends of edges that rounding put into the way, become part of
 /// the chain, each within rounding of the input segment.
@@ -17,23 +24,25 @@ bool March::connect(VertexId t) {
     while (!targets.empty()) {
         if (!within_budget()) return false;
         const VertexId target = targets.back();
-        if (at_ == target || tin_.plan(at_) == tin_.plan(target)) {
+        const Point2 goal = tin_.plan(target);
+        const bool is_passed = goal != end_ && along(goal) <= along(tin_.plan(at_));
+        if (at_ == target || tin_.plan(at_) == goal || is_passed) {
             targets.pop_back();
             continue;
         }
         const std::optional<VertexId> next = collect_corridor(target);
-        if (const Side edge = next ? Side{} : edge_on_way(along(tin_.plan(target))); edge.valid()) {
+        if (const Side edge = next ? Side{} : edge_on_way(along(goal)); edge.valid()) {
+            // Once from each vertex: the straight way may lead back to it.
+            if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end())
+                return fail(ErrorCode::NotRepresentable, kNoWay);
+            detours_.push_back(at_);
             step_along(edge, far_end(edge));
             continue;
         }
-        if (!next)
-            return fail(ErrorCode::NotRepresentable,
-                        "rounding leaves no way to this segment within the promised distance; "
-                        "move it a little");
+        if (!next) return fail(ErrorCode::NotRepresentable, kNoWay);
         if (*next != target && !corridor_.empty()) {
             if (std::find(targets.begin(), targets.end(), *next) != targets.end() || *next == at_)
-                return fail(ErrorCode::NotRepresentable,
-                            "rounding leads the segment in a circle; move it a little");
+                return fail(ErrorCode::NotRepresentable, kNoWay);
             targets.push_back(*next);
             continue;
         }

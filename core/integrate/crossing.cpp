@@ -42,7 +42,7 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     const std::optional<VertexId> met = end_within(exit, near_);
     if (met && (!needs_swaps || has_way(*met))) return connect(*met);
     if (tin_.apex(exit) == at_ && can_absorb(exit, rounding)) return absorb(exit);
-    if (is_near_edge(exit, end_, rounding) && can_split(exit, end_))
+    if (is_near_edge(exit, end_, rounding) && can_bend(exit, end_) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
     if (const std::optional<Point2> p = find_split(exit)) {
         count_crossing(exit);
@@ -50,11 +50,7 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     }
     // Only rounding can forbid the split: a triangle beside the edge is a needle, whose middle
     // vertex goes onto its long side; or whatever else is within reach.
-    for (const Side beside : {exit, tin_.twin(exit)}) {
-        if (!beside.valid()) continue;
-        for (const Side side : {beside, beside.next(), beside.previous()})
-            if (can_absorb(side, reach_of_rounding_)) return absorb(side);
-    }
+    if (absorb_needle_at(exit)) return true;
     if (!tin_.twin(exit).valid() && !needs_swaps &&
         is_near_edge(exit, tin_.plan(at_), reach_of_rounding_)) {
         leave_mesh();
@@ -89,16 +85,23 @@ std::optional<Point2> March::find_split(Side edge) const {
     return best;
 }
 
-/// Where the line through the input segment crosses the edge, rounded once: off by an ulp or so in
-/// each coordinate. The same bits for the reversed segment and from the edge's other side.
+/// Where the input segment crosses the edge. A vertex that rounding or a snap put beside the
+/// segment may stand before an edge that the segment misses or crosses farther back: from there,
+/// where the straight way to its end does, which is no farther from the segment than the vertex is.
 Point2 March::intersection(Side edge) const {
-    Point2 a = tin_.plan(tin_.origin(edge));
-    Point2 b = tin_.plan(tin_.destination(edge));
-    Point2 low = start_, high = end_;
-    // From a snapped vertex the way may cross an edge that the segment itself just misses.
-    if (options_.snap > 0.0 && at_.valid() &&
-        orientation(start_, end_, a) == orientation(start_, end_, b))
-        low = tin_.plan(at_);
+    const Point2 a = tin_.plan(tin_.origin(edge));
+    const Point2 b = tin_.plan(tin_.destination(edge));
+    if (!at_.valid() || tin_.plan(at_) == start_) return crossing_of(start_, end_, a, b);
+    const Point2 here = tin_.plan(at_);
+    const bool misses =
+        options_.snap > 0.0 && orientation(start_, end_, a) == orientation(start_, end_, b);
+    const Point2 p = misses ? here : crossing_of(start_, end_, a, b);
+    return misses || along(p) <= along(here) ? crossing_of(here, end_, a, b) : p;
+}
+
+/// Where two segments that cross do, rounded once: off by an ulp or so in each coordinate. The same
+/// bits in whichever direction either is given.
+Point2 March::crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) const {
     if (is_before(high, low)) std::swap(low, high);
     const AreaEstimate estimate_a = estimate_doubled_area(low, high, a);
     const AreaEstimate estimate_b = estimate_doubled_area(low, high, b);
@@ -166,6 +169,16 @@ bool March::absorb(Side edge) {
     surgery_.absorb_apex(edge);
     ++tally_.edges_swapped;
     return true;
+}
+
+/// Absorbs a needle beside the edge, if there is one.
+bool March::absorb_needle_at(Side edge) {
+    for (const Side beside : {edge, tin_.twin(edge)}) {
+        if (!beside.valid()) continue;
+        for (const Side side : {beside, beside.next(), beside.previous()})
+            if (can_absorb(side, reach_of_rounding_)) return absorb(side);
+    }
+    return false;
 }
 
 /// The end of the edge that is nearest to the input segment, where it is within the distance.

@@ -12,8 +12,9 @@ namespace tinsmith::core {
 
 using enum Orientation;
 
-March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits)
-    : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits) {
+March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
+             Bends& bends)
+    : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits), bends_(bends) {
     const Bounds& box = tin_.bounds();
     const double largest = std::max(
         {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
@@ -89,6 +90,7 @@ void March::set_segment(Point2 start, Point2 end) {
     boundary_visits_.clear();
     entries_known_ = false;
     spent_edges_.clear();
+    detours_.clear();
 }
 
 bool March::march_to_end() {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/integrate/bends.hpp"
 #include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
@@ -60,7 +61,9 @@ struct MarchLimits {
 /// that for the cases in which rounding decides.
 class March {
   public:
-    March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits);
+    /// `bends` is the request's, and knows what earlier shapes of it did.
+    March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
+          Bends& bends);
 
     /// Begins a path at its first point; `index` is the path's in its shape. The path must live
     /// until `finish`. Costs a location. False: stopped, see `error`.
@@ -101,6 +104,9 @@ class March {
     std::optional<std::pair<Side, Point2>> edge_within_snap(const Location& location,
                                                             Point2 p) const;
     VertexId place(Location location, Point2 p);
+    VertexId place_on(Side edge, Point2 p);
+    double bend_of(Side edge, Point2 p) const;
+    bool can_bend(Side edge, Point2 p) const;
     void stand_on(VertexId v);
     void step_along(Side edge, VertexId next);
     void log_elevation(double share);
@@ -111,11 +117,13 @@ class March {
     bool cross_facet_edge(Side exit, bool needs_swaps);
     std::optional<Point2> find_split(Side edge) const;
     Point2 intersection(Side edge) const;
+    Point2 crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) const;
     bool can_split(Side edge, Point2 p) const;
     bool is_near_segment(Point2 p, double distance) const;
     bool is_near_edge(Side edge, Point2 p, double distance) const;
     bool can_absorb(Side edge, double distance) const;
     bool absorb(Side edge);
+    bool absorb_needle_at(Side edge);
     std::optional<VertexId> end_within(Side edge, double distance) const;
     bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
@@ -152,6 +160,7 @@ class March {
     const Tin& tin_;
     const IntegrateOptions& options_;
     const MarchLimits& limits_;
+    Bends& bends_;
     double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
     double snap_;               ///< of this segment
     double near_;               ///< what is nearer is one: half of that, or the snap
@@ -180,6 +189,7 @@ class March {
     std::vector<Entry> entries_;             ///< all that the segment may meet, in order
     std::size_t next_entry_ = 0;             ///< the first that is not yet passed
     bool entries_known_ = false;
+    std::vector<VertexId> detours_;      ///< where this segment took an edge beside it, not across
     std::vector<VertexId> spent_edges_;  ///< boundary edges that led back to one of those
     /// Edges between at_ and the next vertex, by their ends, for swaps move sides about.
     std::vector<std::pair<VertexId, VertexId>> corridor_;

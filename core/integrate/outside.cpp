@@ -129,6 +129,8 @@ bool March::enter_by(const Entry& entry) {
         } else if (p) {
             if (!ends_here) count_crossing(entry.edge);
             v = place({Location::Kind::OnEdge, entry.edge, {}}, *p);
+        } else if (absorb_needle_at(entry.edge)) {
+            return true;  // the entry is looked up anew
         } else {
             return fail(ErrorCode::NotRepresentable,
                         "no mesh of doubles holds this segment where it enters the mesh; move it");

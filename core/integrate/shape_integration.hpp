@@ -15,12 +15,12 @@ namespace tinsmith::core {
 class ShapeIntegration {
   public:
     ShapeIntegration(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-                     Stopwatch& watch, StageTimes& times)
+                     Bends& bends, Stopwatch& watch, StageTimes& times)
         : surgery_(surgery),
           options_(options),
           watch_(watch),
           times_(times),
-          march_(surgery, options, limits),
+          march_(surgery, options, limits, bends),
           improver_(surgery) {}
 
     /// False: stopped, see `error`.

@@ -5,10 +5,16 @@
 
 #include "core/integrate/march.hpp"
 #include "core/mesh/surface.hpp"
+#include "core/predicates/orientation.hpp"
 
 namespace tinsmith::core {
 
+using enum Orientation;
+
 namespace {
+
+/// Of the reach: what rounding does to a position that was computed on an edge. Not added up.
+constexpr double kUsualBend = 0.1875;
 
 double squared_distance(Point2 p, Point2 q) {
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
@@ -78,7 +84,8 @@ VertexId March::place(Location location, Point2 p) {
     if (location.kind == Location::Kind::InTriangle) {
         for (unsigned i = 0; i < 3; ++i) {
             const Side side(location.side.triangle(), i);
-            if (is_near_edge(side, p, reach_of_rounding_ / 2.0) && can_split(side, p))
+            if (is_near_edge(side, p, reach_of_rounding_ / 2.0) && can_bend(side, p) &&
+                can_split(side, p))
                 location = {Location::Kind::OnEdge, side, {}};
         }
     }
@@ -89,8 +96,7 @@ VertexId March::place(Location location, Point2 p) {
             break;
         }
         case Location::Kind::OnEdge:
-            v = surgery_.split_edge(location.side,
-                                    {p.x, p.y, elevation_on(tin_, location.side, p)});
+            v = place_on(location.side, p);
             break;
         case Location::Kind::OnVertex:
         case Location::Kind::Outside:
@@ -98,6 +104,42 @@ VertexId March::place(Location location, Point2 p) {
     }
     changed_.push_back(v);
     return v;
+}
+
+/// Splits an edge at a position that is on it to within rounding. Inside a facet the position takes
+/// its elevation from the plane; between facets from the edge, which it bends.
+VertexId March::place_on(Side edge, Point2 p) {
+    const Side across = tin_.twin(edge);
+    if (across.valid() && !tin_.separates_facets(edge)) {
+        const bool is_across = orientation(tin_.plan(tin_.origin(edge)),
+                                           tin_.plan(tin_.destination(edge)), p) == Clockwise;
+        const TriangleId t = is_across ? across.triangle() : edge.triangle();
+        return surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)});
+    }
+    const double bent = bend_of(edge, p);
+    const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_on(tin_, edge, p)});
+    if (bent > kUsualBend * reach_of_rounding_) bends_.set(v, bent);
+    return v;
+}
+
+/// How far from the edge as it was before the request it is bent when it goes through p: what its
+/// ends are off it there, and p's own distance.
+double March::bend_of(Side edge, Point2 p) const {
+    const Point2 a = tin_.plan(tin_.origin(edge));
+    const Point2 b = tin_.plan(tin_.destination(edge));
+    const double at_a = bends_.of(tin_.origin(edge)), at_b = bends_.of(tin_.destination(edge));
+    const double squared = squared_distance(a, b);
+    const double share =
+        std::clamp(((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / squared, 0.0, 1.0);
+    return at_a + (at_b - at_a) * share +
+           std::fabs(compensated_doubled_area(a, b, p)) / std::sqrt(squared);
+}
+
+/// Whether the edge may go through p: inside a facet always; between facets while what rounding
+/// moved it adds up to no more than half the reach of rounding.
+bool March::can_bend(Side edge, Point2 p) const {
+    if (tin_.twin(edge).valid() && !tin_.separates_facets(edge)) return true;
+    return bend_of(edge, p) <= reach_of_rounding_ / 2.0;
 }
 
 /// Stands on a vertex, which is the chain's next.

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/types/ids.hpp"
+
+namespace tinsmith::core {
+
+/// How far vertices that a request put on edges between facets are off those edges in plan, where
+/// that is more than the rounding of one position. Session unit. One lives for a whole request.
+class Bends {
+  public:
+    /// Zero for vertices that were there before the request, or are on the edge.
+    double of(VertexId v) const {
+        const std::size_t i = v.index() - first_;
+        return v.index() >= first_ && i < bends_.size() ? bends_[i] : 0.0;
+    }
+    void set(VertexId v, double bend) {
+        bends_.resize(v.index() - first_ + 1, 0.0);
+        bends_.back() = bend;
+    }
+
+    /// `first`: what the request's first new vertex will be.
+    explicit Bends(std::size_t first) : first_(first) {}
+
+  private:
+    std::size_t first_;
+    std::vector<double> bends_;
+};
+
+}  // namespace tinsmith::core
