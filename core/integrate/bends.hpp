@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -17,9 +18,13 @@ class Bends {
         const std::size_t i = v.index() - first_;
         return v.index() >= first_ && i < bends_.size() ? bends_[i] : 0.0;
     }
+    /// Remembers the larger of this and what is known. Vertices from before the request do not
+    /// move: theirs is not kept.
     void set(VertexId v, double bend) {
-        bends_.resize(v.index() - first_ + 1, 0.0);
-        bends_.back() = bend;
+        if (v.index() < first_) return;
+        const std::size_t i = v.index() - first_;
+        if (i >= bends_.size()) bends_.resize(i + 1, 0.0);
+        bends_[i] = std::max(bends_[i], bend);
     }
 
     /// `first`: what the request's first new vertex will be.

@@ -156,7 +156,7 @@ bool March::can_absorb(Side edge, double distance) const {
     const Side across = tin_.twin(edge);
     if (!across.valid() || (absorbed_at_ == at_ && absorbed_ >= kMaxAbsorbed)) return false;
     const Point2 c = tin_.plan(tin_.apex(edge));
-    if (!is_near_edge(edge, c, distance)) return false;
+    if (!is_near_edge(edge, c, distance) || !can_bend(edge, c)) return false;
     const Point2 d = tin_.plan(tin_.apex(across));
     return is_left(tin_.plan(tin_.origin(edge)), d, c) &&
            is_left(d, tin_.plan(tin_.destination(edge)), c);
@@ -165,7 +165,9 @@ bool March::can_absorb(Side edge, double distance) const {
 bool March::absorb(Side edge) {
     absorbed_ = absorbed_at_ == at_ ? absorbed_ + 1 : 1;
     absorbed_at_ = at_;
-    changed_.push_back(tin_.apex(edge));
+    const VertexId apex = tin_.apex(edge);
+    if (tin_.separates_facets(edge)) bends_.set(apex, bend_of(edge, tin_.plan(apex)));
+    changed_.push_back(apex);
     surgery_.absorb_apex(edge);
     ++tally_.edges_swapped;
     return true;
