@@ -2,76 +2,148 @@
 #include "core/integrate/improve.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
-#include "core/mesh/surface.hpp"
 #include "core/mesh/walk.hpp"
 #include "core/predicates/orientation.hpp"
 
 namespace tinsmith::core {
 
+namespace {
+
+/// From one vertex to another, in 3D.
+struct Leg {
+    double x, y, z;
+
+    Leg(const Tin::Vertex& from, const Tin::Vertex& to)
+        : x(to.x - from.x), y(to.y - from.y), z(to.z - from.z) {}
+    double squared() const { return x * x + y * y + z * z; }
+};
+
+struct Cosine {
+    double value;  ///< times the lengths of both legs
+    double size;   ///< of the terms that make it up, which bounds its rounding
+
+    Cosine(const Leg& u, const Leg& v)
+        : value(u.x * v.x + u.y * v.y + u.z * v.z),
+          size(std::fabs(u.x * v.x) + std::fabs(u.y * v.y) + std::fabs(u.z * v.z)) {}
+};
+
+/// Twice the area in plan of a counter-clockwise triangle: the same double whichever of its
+/// corners is named first.
+double area_by_lowest_slot(const Tin& tin, VertexId a, VertexId b, VertexId c) {
+    if (a < b && a < c) return doubled_area(tin.plan(b), tin.plan(c), tin.plan(a));
+    if (b < c) return doubled_area(tin.plan(c), tin.plan(a), tin.plan(b));
+    return doubled_area(tin.plan(a), tin.plan(b), tin.plan(c));
+}
+
+/// Grows with a triangle's smallest angle, by its area in plan and its squared edges in 3D; alike
+/// for all triangles of a facet, which are foreshortened alike. Two values compare as the angles do
+/// when these differ by more than a part in 2^36; what is closer is the same to within rounding,
+/// and mostly the same value.
+std::uint64_t rounded_angle(double area, double e, double f, double g) {
+    const double longest = std::max(std::max(e, f), g);
+    const double middle = std::max(std::min(e, f), std::min(std::max(e, f), g));
+    const double measure = area * area / (longest * middle);
+    constexpr unsigned kDropped = 16;  // of 52 bits; positive doubles are in order of their bits
+    return (std::bit_cast<std::uint64_t>(measure) + (1U << (kDropped - 1))) >> kDropped;
+}
+
+/// Smallest angles of two triangles, the smaller first, for lexicographic comparison.
+std::pair<std::uint64_t, std::uint64_t> in_order(std::uint64_t one, std::uint64_t other) {
+    return {std::min(one, other), std::max(one, other)};
+}
+
+}  // namespace
+
 void Improver::improve(const std::vector<VertexId>& vertices) {
-    for (const VertexId v : vertices) {
-        push_star(v);
-        while (!pending_.empty()) {
-            // A side that an earlier swap moved names another edge of the same two triangles, all
-            // of whose edges that swap pushed anew: looking at it costs time, never a miss.
-            const Side s = pending_.back();
-            pending_.pop_back();
-            if (tin_.is_fixed(s) || tin_.separates_facets(s) || !should_swap(s)) continue;
-            const Side diagonal = surgery_.swap_edge(s);
-            ++edges_swapped_;
-            const Side across = tin_.twin(diagonal);
-            pending_.insert(pending_.end(), {diagonal.next(), diagonal.previous(), across.next(),
-                                             across.previous()});
-        }
+    for (const VertexId v : vertices)
+        add_star(v);
+    seen_ = tin_.vertex_count();
+    while (!pending_.empty()) {
+        // A side that an earlier swap moved names another edge of the same two triangles, all of
+        // whose edges that swap added anew: looking at it costs time, never a miss.
+        const Side s = pending_.back();
+        pending_.pop_back();
+        if (!may_swap(s) || !should_swap(s)) continue;
+        const Side diagonal = surgery_.swap_edge(s);
+        ++edges_swapped_;
+        const Side across = tin_.twin(diagonal);
+        for (const Side outer :
+             {diagonal.next(), diagonal.previous(), across.next(), across.previous()})
+            if (may_swap(outer)) pending_.push_back(outer);
     }
 }
 
-void Improver::push_star(VertexId v) {
+/// Adds the edges at the vertex, and those across from it in its triangles.
+void Improver::add_star(VertexId v) {
+    const std::uint32_t newest = std::max(v.value, static_cast<std::uint32_t>(seen_ - 1));
     const Side start = side_from(tin_, v);
     Side s = start;
     do {  // counter-clockwise
-        pending_.insert(pending_.end(), {s, s.next()});
+        add_at(s, newest);
         s = tin_.twin(s.previous());
     } while (s.valid() && s != start);
     if (s.valid()) return;
     for (s = tin_.twin(start); s.valid(); s = tin_.twin(s)) {
         s = s.next();
-        pending_.insert(pending_.end(), {s, s.next()});
+        add_at(s, newest);
     }
 }
 
-/// Whether the edge fails Delaunay's condition in the plane of its facet: the angles across from
-/// it, at c and d, sum to more than 180 degrees. Areas in plan stand for the sines, for all
-/// triangles of a facet are foreshortened alike.
+/// Adds the side and the next one, where they may be swapped, unless one of the edge's four corners
+/// is newer: then that corner's star adds it, so that no edge is looked at twice.
+inline void Improver::add_at(Side side, std::uint32_t newest) {
+    const auto& [v0, v1, v2] = tin_.triangle(side.triangle()).vertices;
+    if (std::max({v0, v1, v2}).value > newest) return;
+    for (const Side s : {side, side.next()})
+        if (may_swap(s) && tin_.apex(tin_.twin(s)).value <= newest) pending_.push_back(s);
+}
+
+inline bool Improver::may_swap(Side s) const {
+    return !tin_.is_fixed(s) && !tin_.separates_facets(s);
+}
+
+//        c            T = (a, b, c) and U = (b, a, d), in one facet;
+//       / \           the edge a -> b fails Delaunay's condition in the facet's plane when the
+//     a --- b         angles at c and d sum to more than 180 degrees: when the sine of the sum is
+//       \ /           negative. Areas in plan stand for the sines, for all triangles of a facet
+//        d            are foreshortened alike.
 bool Improver::should_swap(Side s) const {
     const Side across = tin_.twin(s);
-    const Tin::Vertex& a = tin_.vertex(tin_.origin(s));
-    const Tin::Vertex& b = tin_.vertex(tin_.destination(s));
-    const Tin::Vertex& c = tin_.vertex(tin_.apex(s));
-    const Tin::Vertex& d = tin_.vertex(tin_.apex(across));
-    const auto angle_at = [&a, &b](const Tin::Vertex& v) {
-        const double ax = a.x - v.x, ay = a.y - v.y, az = a.z - v.z;
-        const double bx = b.x - v.x, by = b.y - v.y, bz = b.z - v.z;
-        struct {
-            double cosine, sine;
-        } scaled{ax * bx + ay * by + az * bz, std::fabs(ax * by - ay * bx)};
-        return scaled;
+    const Quad quad{tin_.origin(s), tin_.destination(s), tin_.apex(s), tin_.apex(across)};
+    const Tin::Vertex& a = tin_.vertex(quad.a);
+    const Tin::Vertex& b = tin_.vertex(quad.b);
+    const Tin::Vertex& c = tin_.vertex(quad.c);
+    const Tin::Vertex& d = tin_.vertex(quad.d);
+    const Cosine at_c(Leg(c, a), Leg(c, b));
+    const Cosine at_d(Leg(d, a), Leg(d, b));
+    const double above = doubled_area(a.plan(), b.plan(), c.plan());
+    const double below = doubled_area(b.plan(), a.plan(), d.plan());
+    const double sine = at_c.value * below + at_d.value * above;
+    const double size = at_c.size * below + at_d.size * above;
+    // Areas are right to 2^-36. What is nearer to zero than that may be a circle: ask the angles.
+    return sine <= 0x1p-35 * size && is_better_swapped(quad);
+}
+
+/// Whether the smallest angles of the two triangles, in order, get larger by the swap. In exact
+/// arithmetic those of a pair that fails Delaunay's condition do.
+bool Improver::is_better_swapped(const Quad& quad) const {
+    const auto& [a, b, c, d] = quad;
+    const double beside_a = area_by_lowest_slot(tin_, a, d, c);
+    const double beside_b = area_by_lowest_slot(tin_, d, b, c);
+    if (!(beside_a > 0.0 && beside_b > 0.0)) return false;  // exact: the signs of areas are
+    const auto squared = [this](VertexId p, VertexId q) {
+        return Leg(tin_.vertex(p), tin_.vertex(q)).squared();
     };
-    const auto at_c = angle_at(c);
-    const auto at_d = angle_at(d);
-    const double first = at_c.cosine * at_d.sine;
-    const double second = at_d.cosine * at_c.sine;
-    // Cocircular to within rounding: either diagonal will do, so the one that is there stays.
-    constexpr double kRounding = 1e-13;
-    if (!(first + second < -kRounding * (std::fabs(first) + std::fabs(second)))) return false;
-    if (!is_left(a.plan(), d.plan(), c.plan()) || !is_left(d.plan(), b.plan(), c.plan()))
-        return false;
-    const double now = std::min(smallest_angle_measure(a.point(), b.point(), c.point()),
-                                smallest_angle_measure(b.point(), a.point(), d.point()));
-    const double then = std::min(smallest_angle_measure(a.point(), d.point(), c.point()),
-                                 smallest_angle_measure(d.point(), b.point(), c.point()));
+    const double ab = squared(a, b), cd = squared(c, d);
+    const double ac = squared(a, c), bc = squared(b, c), ad = squared(a, d), bd = squared(b, d);
+    const auto now = in_order(rounded_angle(area_by_lowest_slot(tin_, a, b, c), ab, bc, ac),
+                              rounded_angle(area_by_lowest_slot(tin_, b, a, d), ab, ad, bd));
+    const auto then = in_order(rounded_angle(beside_a, ad, cd, ac),  //
+                               rounded_angle(beside_b, bd, bc, cd));
     return then > now;
 }
 

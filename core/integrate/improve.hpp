@@ -12,23 +12,41 @@ namespace tinsmith::core {
 /// triangulation of its vertices in the facet's own plane: the largest smallest angles that can be
 /// had without moving the surface (the paper's section 3.4, held to its shape-preserving part).
 /// Constrained, locked and boundary edges and edges between facets never swap.
+///
+/// What holds afterwards, for each edge that may swap, around the vertices and wherever a swap
+/// reached: the angles across from it sum to no more than 180 degrees; or to so little more that
+/// the smaller of the smallest angles on either side would not grow by a part in 2^36. Where both
+/// diagonals are as good as that, on four corners of a circle, the one stays or comes that gives
+/// the larger of the two smallest angles more.
 class Improver {
   public:
-    explicit Improver(Surgery& surgery) : surgery_(surgery), tin_(surgery.tin()) {}
+    explicit Improver(Surgery& surgery)
+        : surgery_(surgery), tin_(surgery.tin()), seen_(tin_.vertex_count()) {}
 
-    /// Improves around the vertices and as far as swaps reach from there. Ends: every swap makes
-    /// the smaller of two triangles' smallest angles larger, so the sorted list of all of them
-    /// only grows, and there are finitely many triangulations. Cost: linear in the swaps.
+    /// Improves around the vertices and as far as swaps reach from there. Requires: the vertices
+    /// that are new since the last call, or since the beginning, are among them. Ends: each swap
+    /// makes the sorted list of all triangles' smallest angles, as they are rounded for comparing,
+    /// larger in lexicographic order, and there are finitely many triangulations. Cost: linear in
+    /// the swaps.
     void improve(const std::vector<VertexId>& vertices);
 
     std::uint64_t edges_swapped() const { return edges_swapped_; }
 
   private:
-    void push_star(VertexId v);
+    /// The ends of an edge and the vertices across from it, on its left and right.
+    struct Quad {
+        VertexId a, b, c, d;
+    };
+
+    void add_star(VertexId v);
+    void add_at(Side side, std::uint32_t newest);
+    bool may_swap(Side s) const;
     bool should_swap(Side s) const;
+    bool is_better_swapped(const Quad& quad) const;
 
     Surgery& surgery_;
     const Tin& tin_;
+    std::size_t seen_;  ///< vertices that were there when the last call ended
     std::vector<Side> pending_;
     std::uint64_t edges_swapped_ = 0;
 };

@@ -2,9 +2,7 @@
 #include "core/integrate/measure.hpp"
 
 #include <algorithm>
-#include <array>
-#include <tuple>
-#include <utility>
+#include <cmath>
 #include <vector>
 
 #include "core/mesh/surface.hpp"
@@ -13,47 +11,77 @@ namespace tinsmith::core {
 
 namespace {
 
-/// Smallest and first percentile of the measures, in degrees; zeros where there is none.
-std::pair<double, double> summarize(std::vector<double>& measures) {
-    if (measures.empty()) return {0.0, 0.0};
-    const auto percentile =
-        measures.begin() + static_cast<std::ptrdiff_t>((measures.size() - 1) / 100);
-    std::nth_element(measures.begin(), percentile, measures.end());
-    const double least = *std::min_element(measures.begin(), percentile + 1);
-    return {angle_degrees(least), angle_degrees(*percentile)};
-}
+/// The least of many values and their first percentile, in one pass: keeps the values that may
+/// still be among the lowest hundredth, and few more.
+class Lowest {
+  public:
+    /// `most`: no more values than that will come.
+    explicit Lowest(std::size_t most) : keep_(most / 100 + 1) {
+        values_.reserve(std::min(most, 2 * keep_));
+    }
+
+    void add(double value) {
+        ++count_;
+        if (value >= bound_) return;
+        values_.push_back(value);
+        if (values_.size() == 2 * keep_) drop();
+    }
+
+    /// The smallest, zero where there is none.
+    double least() const {
+        return values_.empty() ? 0.0 : *std::min_element(values_.begin(), values_.end());
+    }
+
+    /// The value that has a hundredth of the others below it, zero where there is none.
+    double percentile() {
+        if (values_.empty()) return 0.0;
+        const auto place = values_.begin() + static_cast<std::ptrdiff_t>((count_ - 1) / 100);
+        std::nth_element(values_.begin(), place, values_.end());
+        return *place;
+    }
+
+  private:
+    void drop() {
+        const auto last = values_.begin() + static_cast<std::ptrdiff_t>(keep_ - 1);
+        std::nth_element(values_.begin(), last, values_.end());
+        bound_ = *last;
+        values_.resize(keep_);
+    }
+
+    std::size_t keep_;
+    std::size_t count_ = 0;
+    double bound_ = HUGE_VAL;  ///< as many values as are kept are no larger
+    std::vector<double> values_;
+};
 
 }  // namespace
 
 Measurement measure_operation(const Tin& tin, const UndoRecord& record) {
-    Measurement result;
-    std::vector<double> measures;
     const std::size_t added = tin.triangle_count() - record.triangle_count;
-    measures.reserve(record.triangles.size() + added);
+    Lowest before(record.triangles.size());
+    Lowest after(record.triangles.size() + added);
+    double steepest = 0.0;  // squared
     // Old slots keep their vertices, and vertices their positions, so the old triangle is there.
-    const auto corners = [&tin](const Tin::Triangle& t) {
-        return std::array{tin.vertex(t.vertices[0]).point(), tin.vertex(t.vertices[1]).point(),
-                          tin.vertex(t.vertices[2]).point()};
+    const auto shape = [&tin](const Tin::Triangle& t) {
+        return TriangleShape(tin.vertex(t.vertices[0]).point(), tin.vertex(t.vertices[1]).point(),
+                             tin.vertex(t.vertices[2]).point());
     };
     for (const auto& [id, old] : record.triangles) {
-        if (old.vertices == tin.triangle(id).vertices) continue;  // a neighbour's link changed only
-        const auto [a, b, c] = corners(old);
-        measures.push_back(smallest_angle_measure(a, b, c));
-        result.steepest_slope = std::max(result.steepest_slope, steepest_slope(a, b, c));
+        const Tin::Triangle& now = tin.triangle(id);
+        if (old.vertices == now.vertices) continue;  // a neighbour's link changed only
+        const TriangleShape was = shape(old);
+        before.add(was.smallest_angle_measure());
+        steepest = std::max(steepest, was.squared_slope());
+        after.add(shape(now).smallest_angle_measure());
     }
-    std::tie(result.smallest_angle_deg.before, result.smallest_angle_deg.p1_before) =
-        summarize(measures);
-    measures.clear();
-    const auto add = [&](const Tin::Triangle& t) {
-        const auto [a, b, c] = corners(t);
-        measures.push_back(smallest_angle_measure(a, b, c));
-    };
-    for (const auto& [id, old] : record.triangles)
-        if (old.vertices != tin.triangle(id).vertices) add(tin.triangle(id));
     for (std::size_t t = record.triangle_count; t < tin.triangle_count(); ++t)
-        add(tin.triangle({static_cast<std::uint32_t>(t)}));
-    std::tie(result.smallest_angle_deg.after, result.smallest_angle_deg.p1_after) =
-        summarize(measures);
+        after.add(shape(tin.triangle({static_cast<std::uint32_t>(t)})).smallest_angle_measure());
+
+    Measurement result;
+    result.steepest_slope = std::sqrt(steepest);
+    result.smallest_angle_deg = {angle_degrees(before.least()), angle_degrees(after.least()),
+                                 angle_degrees(before.percentile()),
+                                 angle_degrees(after.percentile())};
     return result;
 }
 

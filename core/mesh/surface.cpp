@@ -41,61 +41,32 @@ double elevation_on(const Tin& tin, Side s, Point2 p) {
     return std::clamp(z, std::min(a->z, b->z), std::max(a->z, b->z));
 }
 
-double steepest_slope(Point3 a, Point3 b, Point3 c) {
-    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
-    const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-    const double area = doubled_area(a.plan(), b.plan(), c.plan());
-    const double nx = uy * vz - uz * vy;
-    const double ny = uz * vx - ux * vz;
-    return std::sqrt(nx * nx + ny * ny) / area;
-}
-
 namespace {
 
-struct SquaredSizes {
-    double doubled_area;
-    double shortest, middle, longest;  ///< edges
-};
-
-/// The same values whatever the order of the corners.
-SquaredSizes squared_sizes(Point3 a, Point3 b, Point3 c) {
-    const auto squared = [](const Point3& p, const Point3& q) {
-        const double dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
-        return dx * dx + dy * dy + dz * dz;
-    };
-    // Corners by coordinates, so that the sums below round the same way for the same triangle.
+/// Takes the corners in order of their coordinates, so that the sums round the same way for the
+/// same triangle.
+TriangleShape shape_in_any_order(Point3 a, Point3 b, Point3 c) {
     const auto before = [](const Point3& p, const Point3& q) {
         return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
     };
     if (before(b, a)) std::swap(a, b);
     if (before(c, b)) std::swap(b, c);
     if (before(b, a)) std::swap(a, b);
-
-    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
-    const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-    const double nx = uy * vz - uz * vy;
-    const double ny = uz * vx - ux * vz;
-    const double nz = ux * vy - uy * vx;
-    double first = squared(a, b), second = squared(b, c), third = squared(c, a);
-    if (first > third) std::swap(first, third);
-    if (first > second) std::swap(first, second);
-    if (second > third) std::swap(second, third);
-    return {nx * nx + ny * ny + nz * nz, first, second, third};
+    return {a, b, c};
 }
 
 }  // namespace
 
+double steepest_slope(Point3 a, Point3 b, Point3 c) {
+    return std::sqrt(TriangleShape(a, b, c).squared_slope());
+}
+
 double smallest_angle_measure(Point3 a, Point3 b, Point3 c) {
-    const SquaredSizes squared = squared_sizes(a, b, c);
-    // The smallest angle lies between the two longest edges.
-    const double product = squared.middle * squared.longest;
-    return product > 0.0 ? squared.doubled_area / product : 0.0;
+    return shape_in_any_order(a, b, c).smallest_angle_measure();
 }
 
 double aspect_measure(Point3 a, Point3 b, Point3 c) {
-    const SquaredSizes squared = squared_sizes(a, b, c);
-    const double product = squared.longest * squared.longest;
-    return product > 0.0 ? squared.doubled_area / product : 0.0;
+    return shape_in_any_order(a, b, c).aspect_measure();
 }
 
 double angle_degrees(double measure) {

@@ -97,6 +97,16 @@ TEST(SmallestAngle, IsThatOfKnownTriangles) {
     EXPECT_EQ(smallest_angle_measure({1, 1, 1}, {1, 1, 1}, {1, 1, 1}), 0.0);
 }
 
+TEST(Aspect, IsThatOfKnownTriangles) {
+    EXPECT_NEAR(aspect_measure({0, 0, 0}, {2, 0, 0}, {1, std::sqrt(3.0), 0}), 0.75, 1e-15);
+    EXPECT_DOUBLE_EQ(aspect_measure({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0.25);
+    // Longest edge 5, shortest height 12 / 5; the same turned about, out of the level.
+    EXPECT_DOUBLE_EQ(aspect_measure({0, 0, 0}, {3, 0, 0}, {0, 4, 0}), 0.48 * 0.48);
+    EXPECT_DOUBLE_EQ(aspect_measure({0, 0, 0}, {0, 0, 3}, {0, 4, 0}), 0.48 * 0.48);
+    EXPECT_EQ(aspect_measure({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), 0.0);
+    EXPECT_EQ(aspect_measure({1, 1, 1}, {1, 1, 1}, {1, 1, 1}), 0.0);
+}
+
 TEST(SmallestAngle, IsTheSameWhateverTheOrder) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> number(-10.0, 10.0);
@@ -113,6 +123,9 @@ TEST(SmallestAngle, IsTheSameWhateverTheOrder) {
         ASSERT_EQ(smallest_angle_measure(p[1], p[2], p[0]), measure);
         ASSERT_EQ(smallest_angle_measure(p[2], p[0], p[1]), measure);
         ASSERT_EQ(smallest_angle_measure(p[2], p[1], p[0]), measure);
+        const double aspect = aspect_measure(p[0], p[1], p[2]);
+        ASSERT_EQ(aspect_measure(p[1], p[2], p[0]), aspect);
+        ASSERT_EQ(aspect_measure(p[2], p[1], p[0]), aspect);
     }
 }
 
