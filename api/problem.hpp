@@ -29,6 +29,7 @@ enum class ProblemType {
     RequestTimeout,
     NoSuchPath,
     NoSuchSession,
+    NoSuchPolygon,
     MethodNotAllowed,
     VersionMismatch,  ///< If-Match
     EditRefused,      ///< the core refused: the place and reason are in errors[]

@@ -190,7 +190,8 @@ void read_polygon_option(const NamedOption& option, PolygonOptions& out, OptionF
         read_choice(option, {{"skip", core::Outside::Skip}, {"reject", core::Outside::Reject}},
                     integrate.outside, faults);
     } else if (option.name == "winding") {
-        read_choice(option, {{"evenodd", Winding::EvenOdd}, {"nonzero", Winding::NonZero}},
+        read_choice(option,
+                    {{"evenodd", core::Winding::EvenOdd}, {"nonzero", core::Winding::NonZero}},
                     out.winding, faults);
     } else if (option.name == "lock") {
         read_bool(option, integrate.lock, faults);
@@ -284,8 +285,8 @@ void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults&
 
 }  // namespace
 
-std::string_view winding_name(Winding winding) {
-    return winding == Winding::NonZero ? "nonzero" : "evenodd";
+std::string_view winding_name(core::Winding winding) {
+    return winding == core::Winding::NonZero ? "nonzero" : "evenodd";
 }
 
 std::string_view option_values(std::string_view name) {

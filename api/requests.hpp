@@ -8,6 +8,7 @@
 #include "api/fault.hpp"
 #include "api/formats/gltf.hpp"
 #include "core/integrate/integrator.hpp"
+#include "core/regions/region.hpp"
 
 namespace tinsmith::api {
 
@@ -18,20 +19,14 @@ struct NamedOption {
     std::string pointer;
 };
 
-/// Which positions a polygon's closed paths have inside.
-enum class Winding {
-    EvenOdd,  ///< those around which the paths go an odd number of times
-    NonZero,  ///< those around which the paths go at all, turns to the left less turns to the right
-};
-
 /// The word on the wire: "evenodd".
-std::string_view winding_name(Winding winding);
+std::string_view winding_name(core::Winding winding);
 
 /// What a polygons request asks for beside its geometry.
 struct PolygonOptions {
     core::IntegrateOptions integrate;  ///< what may be asked for of it; budgets are not
     bool own_elevations = false;       ///< the positions bring z; otherwise they are draped
-    Winding winding = Winding::EvenOdd;
+    core::Winding winding = core::Winding::EvenOdd;
     bool dry_run = false;
     std::string crs;  ///< of the polygons, normalised; empty: the session's
 };

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 
 #include <nlohmann/json.hpp>
+
+#include "api/formats/json_writer.hpp"
 
 namespace tinsmith::api {
 
@@ -84,40 +84,13 @@ core::ShapeReport total_of(const core::Report& report) {
     return total;
 }
 
-/// Appends a number as the shortest text that reads back to the same value.
-template <typename Number>
-void append_number(std::string& out, Number value) {
-    std::array<char, 32> digits{};
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    out.append(digits.data(), end);
-}
-
-/// "-0" would be read as the whole number nought, which has no sign.
-void append_coordinate(std::string& out, double value) {
-    if (value == 0.0 && std::signbit(value)) {
-        out += "-0.0";
-    } else {
-        append_number(out, value);
-    }
-}
-
-void append_vertex(std::string& out, const core::Point3& p) {
-    out.push_back('[');
-    append_coordinate(out, p.x);
-    out.push_back(',');
-    append_coordinate(out, p.y);
-    out.push_back(',');
-    append_coordinate(out, p.z);
-    out.push_back(']');
-}
-
 void append_triangle(std::string& out, const std::array<std::uint32_t, 3>& triangle) {
     out.push_back('[');
-    append_number(out, triangle[0]);
+    json::append_number(out, triangle[0]);
     out.push_back(',');
-    append_number(out, triangle[1]);
+    json::append_number(out, triangle[1]);
     out.push_back(',');
-    append_number(out, triangle[2]);
+    json::append_number(out, triangle[2]);
     out.push_back(']');
 }
 
@@ -167,7 +140,7 @@ std::string write_mesh_json(const core::MeshData& mesh) {
     out += "{\"vertices\":[";
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (i > 0) out.push_back(',');
-        append_vertex(out, mesh.vertices[i]);
+        json::append_position(out, mesh.vertices[i]);
     }
     out += "],\"triangles\":[";
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "api/formats/geojson.hpp"
-#include "api/requests.hpp"
 #include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
+#include "core/regions/region.hpp"
 #include "core/types/mesh_data.hpp"
 #include "core/types/result.hpp"
 
@@ -21,9 +21,10 @@ namespace tinsmith::server {
 
 /// What a polygon was when it came, beside its paths.
 struct PolygonOrigin {
-    std::string client_id;          ///< the Feature's own; empty: none
+    std::string client_id;          ///< the Feature's own as JSON, a text or a number; empty: none
     std::string properties = "{}";  ///< the Feature's own, text of a JSON object
     api::GeometryType type = api::GeometryType::Polygon;
+    std::size_t paths = 0;
     std::vector<std::size_t> polygon_starts;  ///< see api::RequestedShape
 };
 
@@ -32,19 +33,18 @@ struct Polygon {
     std::string id;
     PolygonOrigin origin;
     core::Shape outline;  ///< its closed paths, as asked for, in plan; empty for lines and points
-    api::Winding winding = api::Winding::EvenOdd;  ///< what the outline's inside is
-    std::shared_ptr<const core::Report> report;    ///< of the request that brought it
-    std::size_t shape = 0;                         ///< its index there
+    core::Winding winding = core::Winding::EvenOdd;  ///< what the outline's inside is
+    std::shared_ptr<const core::Report> report;      ///< of the request that brought it
+    std::size_t shape = 0;                           ///< its index there
 
-    /// As it lies in the mesh of the version that it came with.
-    const std::vector<core::Chain>& chains() const { return report->shapes[shape].chains; }
+    const core::ShapeReport& own_report() const { return report->shapes[shape]; }
 };
 
 /// The shapes of one request, and where each comes from (one for one with the shapes).
 struct PolygonEdit {
     std::vector<core::Shape> shapes;
     std::vector<PolygonOrigin> origins;
-    api::Winding winding = api::Winding::EvenOdd;
+    core::Winding winding = core::Winding::EvenOdd;
     core::IntegrateOptions options;
     bool dry_run = false;
     bool want_mesh = false;  ///< the answer shall hold the mesh that came of it

@@ -30,9 +30,9 @@ PolygonEdit edit_of(std::vector<api::RequestedShape>& shapes, const api::Polygon
     edit.winding = options.winding;
     edit.options = options.integrate;
     for (api::RequestedShape& shape : shapes) {
+        edit.origins.push_back({std::move(shape.id), std::move(shape.properties), shape.type,
+                                shape.shape.paths.size(), shape.polygon_starts});
         edit.shapes.push_back(std::move(shape.shape));
-        edit.origins.push_back(
-            {std::move(shape.id), std::move(shape.properties), shape.type, shape.polygon_starts});
     }
     return edit;
 }

@@ -9,6 +9,7 @@
 namespace tinsmith::server {
 
 inline constexpr const char* kJson = "application/json";
+inline constexpr const char* kGeoJson = "application/geo+json";
 inline constexpr const char* kGlb = "model/gltf-binary";
 
 /// 200 with a body.

@@ -5,6 +5,9 @@
 #include <new>
 #include <utility>
 
+#include "core/regions/constraint_history.hpp"
+#include "server/draping.hpp"
+
 namespace tinsmith::server {
 
 namespace {
@@ -55,9 +58,9 @@ std::size_t bytes_of(const Polygon& polygon) {
                       polygon.origin.polygon_starts.size() * sizeof(std::size_t);
     for (const core::Path& path : polygon.outline.paths)
         sum += sizeof path + path.points.size() * sizeof(core::Point2);
-    for (const core::Chain& chain : polygon.chains())
+    for (const core::Chain& chain : polygon.own_report().chains)
         sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
-    for (const core::OutsidePart& part : polygon.report->shapes[polygon.shape].outside)
+    for (const core::OutsidePart& part : polygon.own_report().outside)
         sum += sizeof part + part.points.size() * sizeof(core::Point2);
     return sum;
 }
@@ -101,6 +104,20 @@ api::SessionView Session::view() const {
 MeshCopy Session::copy_mesh() const {
     const auto lock = lock_to_read();
     return {tin_.to_data(), version_};
+}
+
+DrapedCopy Session::draped(std::optional<std::string_view> id) const {
+    const auto lock = lock_to_read();
+    DrapedCopy copy{{}, version_};
+    std::vector<const Polygon*> wanted;
+    for (const Polygon& polygon : polygons_) {
+        if (!id || polygon.id == *id) wanted.push_back(&polygon);
+    }
+    if (wanted.empty()) return copy;
+    const core::ConstraintHistory history(tin_);
+    for (const Polygon* polygon : wanted)
+        copy.polygons.push_back(drape(tin_, history, *polygon));
+    return copy;
 }
 
 // A shared mutex alone lets a stream of readers keep a writer out for ever.

@@ -7,8 +7,10 @@
 #include <optional>
 #include <shared_mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "api/formats/geojson_writer.hpp"
 #include "api/responses.hpp"
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/tin.hpp"
@@ -32,6 +34,12 @@ struct MeshCopy {
     std::uint64_t version = 0;
 };
 
+/// Polygons at one version, copied out in the same way.
+struct DrapedCopy {
+    std::vector<api::DrapedPolygon> polygons;
+    std::uint64_t version = 0;
+};
+
 /// One terrain in memory: its mesh, its version and its polygons.
 ///
 /// Laws: one writer at a time, readers beside each other; an edit that fails leaves mesh, version
@@ -50,6 +58,9 @@ class Session {
     /// As of the last finished edit: does not wait for one under way.
     api::SessionView view() const;
     MeshCopy copy_mesh() const;
+    /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
+    /// it. Holds the readers' lock while their regions are found.
+    DrapedCopy draped(std::optional<std::string_view> id = {}) const;
     /// Integrates all shapes or none. A dry run works on a copy and holds no writer's lock.
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);

@@ -40,19 +40,25 @@ struct FeatureDraft {
     std::string properties = "{}";
 };
 
-/// A Feature's id: a text or a number.
+/// A Feature's id, kept as JSON: 7 and "7" are two.
 class Id : public json::Text {
   public:
-    explicit Id(std::string& out) : Text(out, kLongestText), out_(out) {}
+    explicit Id(std::string& out) : Text(text_, kLongestText), out_(out) {}
     void scalar(Reader& reader, const Scalar& value) override {
-        if (!value.is_number()) return Text::scalar(reader, value);
-        out_ = json::plain_text(value);
+        if (value.is_number()) {
+            out_ = json::plain_text(value);
+            return;
+        }
+        Text::scalar(reader, value);
+        out_.clear();
+        json::append_text(out_, text_);
     }
 
   protected:
     std::string_view expected() const override { return "a text or a number"; }
 
   private:
+    std::string text_;
     std::string& out_;
 };
 

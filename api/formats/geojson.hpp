@@ -25,7 +25,7 @@ struct RequestedShape {
     core::Shape shape;
     GeometryType type = GeometryType::Polygon;
     std::string pointer;            ///< JSON Pointer of the geometry; "" when it is the body itself
-    std::string id;                 ///< the Feature's id as text; empty: none
+    std::string id;                 ///< the Feature's id as JSON, a text or a number; empty: none
     std::string properties = "{}";  ///< the Feature's properties, the text of a JSON object
     /// MultiPolygon only: for each polygon the index of its first path. Ascending.
     std::vector<std::size_t> polygon_starts;

@@ -24,6 +24,8 @@ Response fork_session(Services&, const Request&, const PathArguments&);
 
 // polygon_routes.cpp
 Response integrate_polygons(Services&, const Request&, const PathArguments&);
+Response list_polygons(Services&, const Request&, const PathArguments&);
+Response get_polygon(Services&, const Request&, const PathArguments&);
 
 // mesh_routes.cpp
 Response get_mesh(Services&, const Request&, const PathArguments&);

@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kMeshTypes{kGlb, kJson};
 
-/// The ETag of one representation: the session's, with a suffix inside the quotes.
-std::string etag_of(const Session& session, std::uint64_t version, std::string_view suffix) {
-    std::string tag = session.etag(version);
-    tag.insert(tag.size() - 1, suffix);
-    return tag;
-}
-
 Response send_glb(const Session& session, const Request& request) {
     auto options = api::parse_mesh_options(options_of_query(request));
     if (!options) {

@@ -16,6 +16,7 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kGlb};
+constexpr std::array<std::string_view, 2> kFeatureTypes{kGeoJson, kJson};
 
 std::optional<Response> refusal_of_type(const Request& request) {
     const std::string type = api::media_type_of(request.header("content-type").value_or(""));
@@ -41,6 +42,13 @@ Response send_mesh_after(const Request& request, const Session& session,
     api::GltfOptions options;
     options.unit_to_metre = api::metres_per(session.facts().unit);
     return glb_response(request, *result.mesh, options, dry_run ? std::string() : made);
+}
+
+Response send_features(const Session& session, const DrapedCopy& copy, std::size_t type,
+                       std::string body) {
+    return ok(std::string(kFeatureTypes[type]), std::move(body))
+        .with("ETag", etag_of(session, copy.version, "-geojson"))
+        .with("Vary", "Accept");
 }
 
 }  // namespace
@@ -85,6 +93,33 @@ Response integrate_polygons(Services& services, const Request& request,
     Response response = as_glb ? send_mesh_after(request, session, result, dry_run)
                                : send_report(session, result, dry_run);
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
+}
+
+Response list_polygons(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const auto type = require_media_type(request, kFeatureTypes);
+    if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    const DrapedCopy copy = session.draped();
+    return send_features(session, copy, std::get<0>(type),
+                         api::write_feature_collection(copy.polygons, session.facts().crs));
+}
+
+Response get_polygon(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const auto type = require_media_type(request, kFeatureTypes);
+    if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    const DrapedCopy copy = session.draped(arguments[1]);
+    if (copy.polygons.empty()) {
+        return refuse(request, api::ProblemType::NoSuchPolygon,
+                      "No polygon of this session has the id \"" + arguments[1].substr(0, 64) +
+                          "\". GET /v1/sessions/" + session.facts().id + "/polygons lists them.");
+    }
+    return send_features(session, copy, std::get<0>(type),
+                         api::write_feature(copy.polygons.front(), session.facts().crs));
 }
 
 }  // namespace tinsmith::server

@@ -103,6 +103,12 @@ Response version_mismatch(const Request& request, const Session& session, std::u
     return response;
 }
 
+std::string etag_of(const Session& session, std::uint64_t version, std::string_view suffix) {
+    std::string tag = session.etag(version);
+    tag.insert(tag.size() - 1, suffix);
+    return tag;
+}
+
 Step<std::size_t> require_media_type(const Request& request,
                                      std::span<const std::string_view> offers) {
     std::string accept;

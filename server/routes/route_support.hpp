@@ -34,6 +34,9 @@ Step<std::optional<std::uint64_t>> require_if_match(const Request& request, cons
 /// 412, with the current version as ETag.
 Response version_mismatch(const Request& request, const Session& session, std::uint64_t current);
 
+/// The ETag of one representation: the session's, with a suffix inside the quotes.
+std::string etag_of(const Session& session, std::uint64_t version, std::string_view suffix);
+
 /// Which of the offers the Accept header prefers, or 406 naming all of them.
 Step<std::size_t> require_media_type(const Request& request,
                                      std::span<const std::string_view> offers);

@@ -31,6 +31,8 @@ std::vector<Route> make_routes(Services& services) {
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, to(fork_session)},
         {"POST", "/v1/sessions/{id}/polygons", polygons, to(integrate_polygons)},
+        {"GET", "/v1/sessions/{id}/polygons", {}, to(list_polygons)},
+        {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},

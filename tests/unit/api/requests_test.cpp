@@ -25,7 +25,7 @@ TEST(PolygonOptions, HaveTheAgreedDefaults) {
     EXPECT_EQ(parsed->integrate.snap, 0.0);
     EXPECT_EQ(parsed->integrate.outside, core::Outside::Skip);
     EXPECT_FALSE(parsed->integrate.lock);
-    EXPECT_EQ(parsed->winding, Winding::EvenOdd);
+    EXPECT_EQ(parsed->winding, core::Winding::EvenOdd);
     EXPECT_FALSE(parsed->dry_run);
     EXPECT_EQ(parsed->crs, "");
 }
@@ -49,7 +49,7 @@ TEST(PolygonOptions, AreReadByName) {
     EXPECT_EQ(parsed->integrate.outside, core::Outside::Reject);
     EXPECT_EQ(parsed->integrate.snap, 0.25);
     EXPECT_TRUE(parsed->integrate.lock);
-    EXPECT_EQ(parsed->winding, Winding::NonZero);
+    EXPECT_EQ(parsed->winding, core::Winding::NonZero);
     EXPECT_TRUE(parsed->dry_run);
     EXPECT_EQ(parsed->crs, "EPSG:32616");
 }

@@ -73,6 +73,20 @@ TEST(GeoJson, AFeatureKeepsNothingOfTheOneBefore) {
     EXPECT_EQ(coordinate_pointer(request->shapes[1], 1, 0), "/features/1/geometry/coordinates/1");
 }
 
+TEST(GeoJson, KeepsAnIdAsItWasWritten) {
+    const auto id_of = [](const std::string& id) {
+        return read_geojson(R"({"type": "Feature", "id": )" + id +
+                                R"(, "geometry": {"type": "Point", "coordinates": [1, 2]}})",
+                            {})
+            ->shapes.at(0)
+            .id;
+    };
+    EXPECT_EQ(id_of("7"), "7");
+    EXPECT_EQ(id_of("7.50"), "7.50");
+    EXPECT_EQ(id_of(R"("7")"), R"("7")");
+    EXPECT_EQ(id_of(R"("a\"b")"), R"("a\"b")");
+}
+
 TEST(GeoJson, MultiPolygonsAndMultiLinesAreOneShape) {
     const auto polygons = read_geojson(
         R"({"type": "Feature", "properties": null, "geometry": {"type": "MultiPolygon",

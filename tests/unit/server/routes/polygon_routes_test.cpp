@@ -216,5 +216,74 @@ TEST_F(PolygonRoutes, SuspectDegrees) {
     EXPECT_NE(errors.at(0)["detail"].get<std::string>().find("degrees"), std::string::npos);
 }
 
+TEST_F(PolygonRoutes, ComeBackDraped) {
+    report_of("?winding=nonzero", R"({"type": "Feature", "id": "pond", "properties": {"a": 1.50},
+        "geometry": {"type": "Polygon", "coordinates": [[[2,2],[6,2],[6,6],[2,6],[2,2]]]}})");
+    report_of("", R"({"type": "LineString", "coordinates": [[4,1],[4,9]]})");
+    const Response answer = ask("GET", session + "/polygons");
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    EXPECT_EQ(answer.content_type, "application/geo+json");
+    const json list = json::parse(answer.body);
+    EXPECT_EQ(list["crs"]["properties"]["name"], "EPSG:32616");
+    ASSERT_EQ(list["features"].size(), 2U);
+    const json& pond = list["features"][0];
+    EXPECT_EQ(pond["id"], "pond");
+    EXPECT_EQ(pond["geometry"]["type"], "Polygon");
+    EXPECT_EQ(pond["tinsmith"]["id"], "p1");
+    EXPECT_EQ(pond["tinsmith"]["winding"], "nonzero");
+    EXPECT_NEAR(pond["tinsmith"]["plan_area"].get<double>(), 16.0, 1e-9);
+    EXPECT_GT(pond["tinsmith"]["surface_area"], 16.0);
+    EXPECT_GE(pond["tinsmith"]["triangles"], 4);
+    const json& ring = pond["geometry"]["coordinates"][0];
+    EXPECT_EQ(ring.front(), ring.back());
+    for (const json& position : ring)
+        EXPECT_EQ(position[2], elevation_at(position[0], position[1])) << position;
+    EXPECT_EQ(std::count_if(ring.begin(), ring.end(),
+                            [](const json& position) { return position[0] == 4.0; }),
+              2)
+        << "where the later line split it: " << ring;
+    EXPECT_EQ(list["features"][1]["geometry"]["type"], "LineString");
+    EXPECT_FALSE(list["features"][1]["tinsmith"].contains("plan_area"));
+    EXPECT_EQ(report_of("?dry_run=true", answer.body)["polygons"].size(), 2U) << "it can be sent";
+}
+
+TEST_F(PolygonRoutes, ComeBackOneByOne) {
+    report_of("", kParcel);
+    const Response one = ask("GET", session + "/polygons/p1", {{"accept", "application/json"}});
+    ASSERT_EQ(one.status, 200) << one.body;
+    EXPECT_EQ(one.content_type, "application/json");
+    EXPECT_EQ(json::parse(one.body)["type"], "Feature");
+    EXPECT_EQ(header(one, "ETag"), header(ask("GET", session + "/polygons"), "ETag"));
+    const Response none = ask("GET", session + "/polygons/p2");
+    EXPECT_EQ(none.status, 404);
+    EXPECT_EQ(told(none), "no-such-polygon");
+    EXPECT_EQ(ask("GET", session + "/polygons", {{"accept", "image/png"}}).status, 406);
+    EXPECT_EQ(ask("GET", "/v1/sessions/none/polygons").status, 404);
+}
+
+TEST_F(PolygonRoutes, ComeBackAsFarAsTheyLieOnTheMesh) {
+    report_of("", R"({"type": "Polygon", "coordinates": [[[5,2],[15,2],[15,4],[5,4],[5,2]]]})");
+    report_of("",
+              R"({"type": "Polygon", "coordinates": [[[-5,-5],[15,-5],[15,15],[-5,15],[-5,-5]]]})");
+    const json list = json::parse(ask("GET", session + "/polygons").body)["features"];
+    EXPECT_EQ(list[0]["geometry"]["type"], "MultiLineString");
+    EXPECT_EQ(list[0]["tinsmith"]["partly_outside"], true);
+    EXPECT_NEAR(list[0]["tinsmith"]["plan_area"].get<double>(), 10.0, 1e-9);
+    EXPECT_TRUE(list[1]["geometry"].is_null());
+    EXPECT_NEAR(list[1]["tinsmith"]["plan_area"].get<double>(), 100.0, 1e-9);
+}
+
+TEST_F(PolygonRoutes, WindAsAsked) {
+    // Two squares of one polygon over each other, both counter-clockwise.
+    const std::string twice = R"({"type": "MultiPolygon", "coordinates": [
+        [[[1,1],[5,1],[5,5],[1,5],[1,1]]], [[[3,3],[7,3],[7,7],[3,7],[3,3]]]]})";
+    report_of("?winding=evenodd", twice);
+    report_of("?winding=nonzero", twice);
+    const json list = json::parse(ask("GET", session + "/polygons").body)["features"];
+    EXPECT_NEAR(list[0]["tinsmith"]["plan_area"].get<double>(), 24.0, 1e-9);
+    EXPECT_NEAR(list[1]["tinsmith"]["plan_area"].get<double>(), 28.0, 1e-9);
+    EXPECT_EQ(list[0]["geometry"]["type"], "MultiPolygon");
+}
+
 }  // namespace
 }  // namespace tinsmith::server
