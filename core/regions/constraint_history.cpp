@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_set>
 
 #include "core/mesh/walk.hpp"
 
@@ -18,13 +19,20 @@ ConstraintHistory::ConstraintHistory(const Tin& tin) : tin_(tin) {
     });
 }
 
-const ConstraintHistory::Split* ConstraintHistory::newest_split(VertexId a, VertexId b) const {
-    const std::uint64_t edge = edge_key(a, b);
-    const auto after =
-        std::upper_bound(splits_.begin(), splits_.end(), edge,
-                         [](std::uint64_t key, const Split& split) { return key < split.edge; });
-    if (after == splits_.begin() || std::prev(after)->edge != edge) return nullptr;
-    return &*std::prev(after);
+std::span<const ConstraintHistory::Split> ConstraintHistory::splits_of(VertexId a,
+                                                                       VertexId b) const {
+    struct ByEdge {
+        bool operator()(const Split& split, std::uint64_t edge) const { return split.edge < edge; }
+        bool operator()(std::uint64_t edge, const Split& split) const { return edge < split.edge; }
+    };
+    const auto [first, last] =
+        std::equal_range(splits_.begin(), splits_.end(), edge_key(a, b), ByEdge{});
+    return {first, last};
+}
+
+bool ConstraintHistory::is_constrained(VertexId a, VertexId b) const {
+    const Side edge = find_edge(tin_, a, b);
+    return edge.valid() && tin_.is_constrained(edge);
 }
 
 // Rounding can bring an edge back that was split before: a-c-b, where c is beside the line a-b,
@@ -45,13 +53,11 @@ std::vector<VertexId> ConstraintHistory::expand(std::span<const VertexId> chain)
         while (!targets.empty()) {
             const VertexId from = expanded.back();
             Target& target = targets.back();
-            const Side edge = find_edge(tin_, from, target.vertex);
-            const Split* split = edge.valid() && tin_.is_constrained(edge)
-                                     ? nullptr
-                                     : newest_split(from, target.vertex);
-            if (split != nullptr && split->index >= target.since) {
-                target.since = split->index + 1;
-                targets.push_back({split->p, target.since});
+            const std::span<const Split> splits = splits_of(from, target.vertex);
+            if (!splits.empty() && splits.back().index >= target.since &&
+                !is_constrained(from, target.vertex)) {
+                target.since = splits.back().index + 1;
+                targets.push_back({splits.back().p, target.since});
                 continue;
             }
             if (target.vertex != from) expanded.push_back(target.vertex);
@@ -59,6 +65,32 @@ std::vector<VertexId> ConstraintHistory::expand(std::span<const VertexId> chain)
         }
     }
     return expanded;
+}
+
+std::vector<std::pair<VertexId, VertexId>> ConstraintHistory::edges_along(
+    std::span<const VertexId> chain) const {
+    std::vector<std::pair<VertexId, VertexId>> edges;
+    std::unordered_set<std::size_t> followed;  // asked for membership alone
+    struct Part {
+        VertexId a;
+        VertexId b;
+        std::size_t since;
+    };
+    std::vector<Part> parts;
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+        parts.push_back({chain[i - 1], chain[i], 0});
+        while (!parts.empty()) {
+            const auto [a, b, since] = parts.back();
+            parts.pop_back();
+            if (is_constrained(a, b)) edges.emplace_back(a, b);
+            for (const Split& split : splits_of(a, b)) {
+                if (split.index < since || !followed.insert(split.index).second) continue;
+                parts.push_back({a, split.p, split.index + 1});
+                parts.push_back({split.p, b, split.index + 1});
+            }
+        }
+    }
+    return edges;
 }
 
 }  // namespace tinsmith::core

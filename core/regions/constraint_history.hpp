@@ -26,13 +26,21 @@ class ConstraintHistory {
     /// Cost: the chain as it is now, times the logarithm of the splits and the vertices' degrees.
     std::vector<VertexId> expand(std::span<const VertexId> chain) const;
 
+    /// All constrained edges along the chain: those of `expand`; and where rounding brought an edge
+    /// back that had been split, the edge as well as its parts, which lie beside it within
+    /// rounding. Each edge by its ends, some perhaps more than once. Requirements and cost as
+    /// above.
+    std::vector<std::pair<VertexId, VertexId>> edges_along(std::span<const VertexId> chain) const;
+
   private:
     struct Split {
         std::uint64_t edge;  ///< both ends, whichever way round
         std::size_t index;   ///< in `Tin::constraint_splits`
         VertexId p;
     };
-    const Split* newest_split(VertexId a, VertexId b) const;
+    /// The splits of the edge, oldest first.
+    std::span<const Split> splits_of(VertexId a, VertexId b) const;
+    bool is_constrained(VertexId a, VertexId b) const;
 
     const Tin& tin_;
     std::vector<Split> splits_;  ///< by edge, then by age

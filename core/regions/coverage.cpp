@@ -30,11 +30,9 @@ template class ShapesByKey<TriangleId>;
 Linework::Linework(const ConstraintHistory& history, std::span<const Lines> lines) {
     std::vector<std::pair<std::uint64_t, std::size_t>> entries;
     for (const auto& [shape, chains] : lines) {
-        for (const Chain& chain : chains) {
-            const std::vector<VertexId> line = history.expand(chain.vertices);
-            for (std::size_t i = 1; i < line.size(); ++i)
-                entries.emplace_back(edge_key(line[i - 1], line[i]), shape);
-        }
+        for (const Chain& chain : chains)
+            for (const auto& [a, b] : history.edges_along(chain.vertices))
+                entries.emplace_back(edge_key(a, b), shape);
     }
     shapes_ = ShapesByKey<std::uint64_t>(std::move(entries));
 }

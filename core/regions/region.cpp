@@ -7,9 +7,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/mesh/triangle_set.hpp"
 #include "core/mesh/walk.hpp"
 #include "core/predicates/orientation.hpp"
-#include "core/mesh/triangle_set.hpp"
 #include "core/regions/winding_number.hpp"
 
 namespace tinsmith::core {

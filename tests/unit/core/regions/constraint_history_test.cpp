@@ -106,6 +106,11 @@ TEST(ConstraintHistory, TakesAnEdgeThatCameBack) {
     const Vertices now = ConstraintHistory(tin).expand(ends);
     EXPECT_EQ(now, (Vertices{{0}, p, {1}}));
     expect_joined(tin, now);
+    // Its first parts are constrained still, and along the line.
+    using Edge = std::pair<VertexId, VertexId>;
+    auto along = ConstraintHistory(tin).edges_along(ends);
+    std::sort(along.begin(), along.end());
+    EXPECT_EQ(along, (std::vector<Edge>{{{0}, {2}}, {{0}, p}, {{2}, {1}}, {p, {1}}}));
 }
 
 TEST(ConstraintHistory, HoldsThroughCrossingsSwapsAndUndo) {
