@@ -214,6 +214,21 @@ TEST_F(Service, HonoursTheOptionsOfPolygons) {
     }
 }
 
+TEST_F(Service, SendsPolygonsBack) {
+    const std::string session = make_session();
+    const Answer done = ask(port(), "POST", session + "/polygons", {kJson}, R"({"type": "Feature",
+        "properties": {"name": "pond"}, "geometry": {"type": "Polygon",
+        "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]}})");
+    ASSERT_EQ(done.status, 200) << done.body;
+    const Answer all = ask(port(), "GET", session + "/polygons");
+    EXPECT_EQ(all.status, 200);
+    EXPECT_EQ(all.header("content-type"), "application/geo+json");
+    EXPECT_EQ(json::parse(all.body)["features"][0]["properties"]["name"], "pond");
+    const Answer one = ask(port(), "GET", session + "/polygons/p1");
+    EXPECT_NEAR(json::parse(one.body)["tinsmith"]["plan_area"].get<double>(), 9.0, 1e-9);
+    expect_problem(ask(port(), "GET", session + "/polygons/p9"), 404);
+}
+
 TEST_F(Service, WantsAllElevationsOrNone) {
     const Answer refused = ask(port(), "POST", make_session() + "/polygons?elevation=own", {kJson},
                                R"({"type": "LineString", "coordinates": [[1,1,5],[2,3],[4,4]]})");
