@@ -40,10 +40,11 @@ TEST_P(CaseFile, ReadsAsItIsWritten) {
     EXPECT_EQ(test::case_text(test::read_case(in)), once);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, CaseFile, testing::ValuesIn(files_in(kCases)),
-                         [](const auto& info) {
-                             return std::filesystem::path(info.param).stem().string();
-                         });
+std::string case_name(const testing::TestParamInfo<std::string>& info) {
+    return std::filesystem::path(info.param).stem().string();
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, CaseFile, testing::ValuesIn(files_in(kCases)), case_name);
 
 TEST(CaseText, AFaultyLineIsNamed) {
     for (const std::string line : {"vertex 1 2", "triangle 0 1 x", "point 1 2", "request fast",

@@ -7,6 +7,13 @@
 
 namespace tinsmith::test {
 
+/// What is let pass on meshes of a kind. These numbers only ever shrink.
+struct Allowance {
+    std::size_t forced = 0;        ///< vertices at one place beyond those that G8 counts
+    double unrepresentable = 0.0;  ///< requests refused for that, of a million
+};
+Allowance allowance_of(MeshKind kind);
+
 /// What a seed stands for: a mesh, and a few requests that may look at the mesh as it is by then.
 class RandomCase {
   public:

@@ -10,6 +10,7 @@
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
 #include "tests/support/compact.hpp"
+#include "tests/verify/exact.hpp"
 
 namespace tinsmith::test {
 
@@ -17,6 +18,25 @@ using core::Path;
 using core::Shape;
 
 namespace {
+
+/// Whether triangles lie over one another, which `build_tin` does not look for. Cost: quadratic.
+bool overlaps(const core::MeshData& mesh) {
+    const auto plan = [&](std::uint32_t v) { return mesh.vertices[v].plan(); };
+    for (const auto& t : mesh.triangles) {
+        for (const auto& u : mesh.triangles) {
+            for (unsigned i = 0; i < 3; ++i) {
+                const auto a = plan(t[i]), b = plan(t[(i + 1) % 3]), c = plan(t[(i + 2) % 3]);
+                for (unsigned k = 0; k < 3; ++k)
+                    if (verify::cross_properly(a, b, plan(u[k]), plan(u[(k + 1) % 3]))) return true;
+                const auto p = plan(u[i]);
+                if (verify::side_of(a, b, p) > 0 && verify::side_of(b, c, p) > 0 &&
+                    verify::side_of(c, a, p) > 0)
+                    return true;
+            }
+        }
+    }
+    return false;
+}
 
 /// Holds the smallest failing case so far and tries smaller ones.
 class Shrinker {
@@ -53,7 +73,7 @@ class Shrinker {
     }
 
     bool attempt(Case candidate) {
-        if (!fails_(candidate)) return false;
+        if (overlaps(candidate.mesh) || !fails_(candidate)) return false;
         smallest_ = std::move(candidate);
         changed_ = true;
         return true;

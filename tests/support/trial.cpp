@@ -46,9 +46,11 @@ Verdict Trial::apply(const Request& request) {
         verdict.refused = true;
         const ErrorCode code = report.errors()[0].code;
         verdict.unrepresentable = code == ErrorCode::NotRepresentable && leniency_.unrepresentable;
+        const bool may_leave =
+            code == ErrorCode::LeavesMesh && request.options.outside == core::Outside::Reject;
         if (!same_bytes(verifier_->mesh(), tin_->to_data()))
             verdict.broken.push_back("G6 a refused request changed the mesh");
-        else if (code != ErrorCode::OutsideMesh && !verdict.unrepresentable)
+        else if (code != ErrorCode::OutsideMesh && !may_leave && !verdict.unrepresentable)
             verdict.broken.push_back(std::string(code_name(code)) + ": " +
                                      report.errors()[0].detail);
         return verdict;

@@ -11,6 +11,11 @@ void append(Faults& to, Faults more) {
     std::move(more.begin(), more.end(), std::back_inserter(to));
 }
 
+bool brings_elevations(const core::Shape& shape) {
+    return std::any_of(shape.paths.begin(), shape.paths.end(),
+                       [](const core::Path& path) { return !path.elevations.empty(); });
+}
+
 }  // namespace
 
 Verifier::Verifier(core::MeshData mesh)
@@ -31,14 +36,22 @@ Faults Verifier::step(core::MeshData after, std::span<const core::Shape> shapes,
     const Edit edit{*now_, *next, shapes, options, certified};
     Change change;
     faults = check_coverage(edit, change);
-    if (faults.empty()) append(faults, check_surface(edit, change));
+    // What follows a shape that brings elevations lies on a surface that is in neither mesh.
+    const auto bending = std::find_if(shapes.begin(), shapes.end(), brings_elevations);
+    const bool comparable = bending == shapes.end() || bending + 1 == shapes.end();
+    if (faults.empty() && comparable) append(faults, check_surface(edit, change));
     append(faults, check_chains(edit));
     // Facets outlive requests, so the mesh's edges are those of the first mesh, and the segments
-    // all that were given since.
+    // all that were given since; but new elevations bend the surface along edges of the new mesh.
     all_.insert(all_.end(), shapes.begin(), shapes.end());
     widest_reach_ = std::max(widest_reach_, 2 * chain_reach(edit));
-    if (forced != kUncounted)
+    if (forced != kUncounted && comparable)
         append(faults, check_economy(*origin_, next->data, all_, widest_reach_, forced));
+    if (bending != shapes.end()) {
+        origin_ = next;
+        all_.clear();
+        widest_reach_ = 0.0;
+    }
     now_ = next;
     return faults;
 }
