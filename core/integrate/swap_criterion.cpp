@@ -40,11 +40,11 @@ bool is_flat(const SwapQuad& quad) {
     // Three differences, two products and up to three sums: below 10 roundings each.
     constexpr double kRounding = 0x1p-49;
     // Six times the volume is the plan area of the parallelogram on the diagonals times the
-    // vertical distance of these; half an ulp at each corner moves that by no more than an ulp.
+    // vertical distance of these. That is known to a few ulps, for each elevation was computed.
     const double highest =
         std::max({std::fabs(a.z), std::fabs(b.z), std::fabs(c.z), std::fabs(d.z)});
     const double area = std::fabs(ab.x * (c.y - d.y) - ab.y * (c.x - d.x));
-    return std::fabs(volume) <= kRounding * sum + ulp(highest) * area;
+    return std::fabs(volume) <= kRounding * sum + 4.0 * ulp(highest) * area;
 }
 
 }  // namespace
