@@ -232,11 +232,19 @@ void check_pairs(std::span<const NamedOption> options, const PolygonOptions& rea
     }
 }
 
+/// Whether two values of one option say the same, be it in other digits or another spelling.
+bool is_same(const NamedOption& a, const NamedOption& b) {
+    if (a.value == b.value) return true;
+    const auto number = parse_number(a.value);
+    const auto crs = a.name == "crs" ? normalise_crs(a.value) : std::nullopt;
+    return (number && number == parse_number(b.value)) || (crs && crs == normalise_crs(b.value));
+}
+
 /// True for the second of two options of one name; faults if they contradict each other.
 bool is_repeated(std::span<const NamedOption> options, std::size_t i, OptionFaults& faults) {
     for (std::size_t j = 0; j < i; ++j) {
         if (options[j].name != options[i].name) continue;
-        if (options[j].value != options[i].value) faults.add_contradiction(options[i]);
+        if (!is_same(options[j], options[i])) faults.add_contradiction(options[i]);
         return true;
     }
     return false;

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "api/formats/json_reader_values.hpp"
+
 namespace tinsmith::api {
 
 namespace {
@@ -35,6 +37,9 @@ class ElevationCheck {
                   "With elevation=own every position is three numbers, [x, y, z]; this one has no "
                   "elevation.",
                   p, i);
+        } else if (!json::acceptable_coordinate(z)) {
+            fault("COORDINATE_OUT_OF_RANGE", json::coordinate_out_of_range(), p, i);
+            faults_.back().pointer += "/2";
         } else if (i == path.points.size() && differs(z, elevation(p, 0))) {
             fault("RING_NOT_CLOSED",
                   "The last position of a ring is the same as its first, in elevation too.", p, i);

@@ -140,6 +140,9 @@ TEST(PolygonOptions, NameAllFaultsAtOnce) {
 TEST(PolygonOptions, MayBeGivenTwiceIfTheyAgree) {
     EXPECT_TRUE(
         polygon_options({{"improve", "none", ""}, {"improve", "none", "/tinsmith/improve"}}));
+    EXPECT_TRUE(polygon_options({{"snap", "0.5", ""}, {"snap", "5.0e-1", "/tinsmith/snap"}}));
+    EXPECT_TRUE(polygon_options(
+        {{"crs", "EPSG:32616", ""}, {"crs", "urn:ogc:def:crs:EPSG::32616", "/tinsmith/crs"}}));
     const auto parsed =
         polygon_options({{"improve", "none", ""}, {"improve", "strict", "/tinsmith/improve"}});
     ASSERT_FALSE(parsed);

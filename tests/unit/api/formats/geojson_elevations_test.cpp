@@ -76,6 +76,11 @@ TEST(Elevations, AreMissedWhereverTheyAre) {
               "ELEVATION_MISSING /coordinates/0/2\n");
 }
 
+TEST(Elevations, AreLengths) {
+    EXPECT_EQ(told(R"({"type": "LineString", "coordinates": [[0,0,0.0],[1,0,1e-300],[2,0,1e-9]]})"),
+              "COORDINATE_OUT_OF_RANGE /coordinates/1/2\n");
+}
+
 TEST(Elevations, CloseTheRingToo) {
     EXPECT_EQ(told(R"({"type": "Polygon", "coordinates": [[[0,0,1],[1,0,1],[1,1,1],[0,0,2]]]})"),
               "RING_NOT_CLOSED /coordinates/0/3\n");
