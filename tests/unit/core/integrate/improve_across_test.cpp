@@ -134,27 +134,33 @@ TEST(ImproveAcross, RefusesExactlyWhatPassesTheLimit) {
     EXPECT_FALSE(improve(saddle(0.0), 0.0).has_edge_01);
 }
 
+TEST(ImproveAcross, TheTrianglesItMakesAreNewFacetsOfTheirOwn) {
+    Tin tin = built(saddle(0.25));
+    ASSERT_EQ(improve(tin).outcome.edges_swapped, 1u);
+    EXPECT_NE(tin.facet({0}), tin.facet({1}));
+    EXPECT_GE(std::min(tin.facet({0}), tin.facet({1})).value, 2u);
+}
+
 TEST(ImproveAcross, AddsToWhatTheTrianglesCarryAlready) {
-    // Two saddles in a row: the second swap takes one triangle that the first one made.
-    const MeshData mesh{
-        {{-2, 0, 0}, {2, 0, 0}, {0, 1, 0.25}, {0, -1, 0.25}, {2.5, 1.0, 0.5}, {2.5, -1.0, 0.5}},
-        {{0, 1, 2}, {1, 0, 3}, {1, 4, 2}, {1, 3, 5}, {1, 5, 4}},
-        {}};
+    // Swapping 0-1 makes the triangle 3-1-2; then 1-2, with the sliver 1-4-2 beyond, is the next.
+    MeshData mesh = saddle(0.25);
+    mesh.vertices.push_back({1.05, 0.6, 0.17});
+    mesh.triangles.push_back({1, 4, 2});
+    const auto& v = mesh.vertices;
+    const double second = vertical_gap({v[1], v[2], v[3], v[4]});
+    ASSERT_GT(second, 0.01);
     Tin tin = built(mesh);
     CrossFacetImprover improver;
     Surgery surgery(tin);
-    const auto first = improver.improve(surgery, {VertexId{0}});
-    ASSERT_EQ(first.edges_swapped, 1u);
-    EXPECT_NEAR(first.max_deviation, 0.25, 1e-9);
-    // The triangles beside the new edge 2-3 are facets of their own, newer than all others.
-    const Side edge = find_edge(tin, {2}, {3});
-    ASSERT_TRUE(edge.valid());
-    const FacetId one = tin.facet(edge.triangle()), other = tin.facet(tin.twin(edge).triangle());
-    EXPECT_NE(one, other);
-    EXPECT_GE(std::min(one.value, other.value), 5u);
-    const auto second = improver.improve(surgery, all_vertices(tin));
-    EXPECT_EQ(improver.edges_swapped(), 1u + second.edges_swapped);
-    EXPECT_EQ(improver.max_deviation(), std::max(first.max_deviation, second.max_deviation));
+    const auto outcome = improver.improve(surgery, {VertexId{3}});
+    EXPECT_EQ(outcome.edges_swapped, 2u);
+    EXPECT_NEAR(outcome.max_deviation, 0.25 + second, 1e-9);
+    EXPECT_GE(outcome.max_deviation, 0.25 + second);
+    // Where what was carried is too much already, the second swap is refused.
+    surgery.roll_back();
+    CrossFacetImprover bounded(0.25 + second / 2);
+    Surgery again(tin);
+    EXPECT_EQ(bounded.improve(again, {VertexId{3}}).edges_swapped, 1u);
 }
 
 TEST(ImproveAcross, InsideAFacetNothingIsCarriedAndTheFacetStays) {
