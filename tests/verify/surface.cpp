@@ -24,9 +24,13 @@ class Comparison {
   public:
     Comparison(const Edit& edit, const Change& change) : edit_(edit), change_(change) {
         reach_ = edit.before.grid.rounding_reach();
+        // A vertex may be within rounding of a triangle that only touches those that changed.
         for (const std::uint32_t t : change.removed)
-            steepest_ =
-                std::max(steepest_, slope(old_corner(t, 0), old_corner(t, 1), old_corner(t, 2)));
+            for (const std::uint32_t v : edit.before.data.triangles[t])
+                for (const Corner& corner : edit.before.stars.around(v))
+                    steepest_ = std::max(steepest_, slope(old_corner(corner.triangle, 0),
+                                                          old_corner(corner.triangle, 1),
+                                                          old_corner(corner.triangle, 2)));
         const double rounding = 1e-9 * edit.before.grid.extent() + reach_ * steepest_;
         promised_ = edit.certified;
         if (edit.options.improve == Improve::None || edit.options.improve == Improve::Strict)
@@ -101,8 +105,32 @@ class Comparison {
             return;
         }
         const Point3 a = old_corner(t, 0), b = old_corner(t, 1), c = old_corner(t, 2);
-        if (!gap_to_plane_within(p, a, b, c, bound_))
+        if (!gap_to_plane_within(p, a, b, c, bound_) && !is_between_parts(p.plan()))
             off("new vertex", p.plan(), gap_to_plane(p, a, b, c));
+    }
+
+    /// Whether two outline edges that share no vertex are within rounding of p. Where parts of the
+    /// mesh touch like that, a position has an elevation on each and rounding may put one part
+    /// over the other: which of the two is meant cannot be told.
+    bool is_between_parts(Point2 p) const {
+        const Snapshot& before = edit_.before;
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> outline;
+        bool found = false;
+        before.grid.near({p.x - reach_, p.y - reach_}, {p.x + reach_, p.y + reach_},
+                         [&](std::uint32_t t) {
+                             for (unsigned i = 0; i < 3; ++i) {
+                                 const std::uint32_t v = before.data.triangles[t][i];
+                                 const std::uint32_t w = before.data.triangles[t][(i + 1) % 3];
+                                 if (before.stars.triangle_of(w, v) != kNone ||
+                                     !is_within(p, before.data.vertices[v].plan(),
+                                                before.data.vertices[w].plan(), reach_))
+                                     continue;
+                                 for (const auto& [a, b] : outline)
+                                     found = found || (a != v && a != w && b != v && b != w);
+                                 outline.emplace_back(v, w);
+                             }
+                         });
+        return found;
     }
 
     /// A new vertex of the outline may be beyond the old one by rounding: the elevation there is
@@ -142,8 +170,9 @@ class Comparison {
                 if (ic > id && edit_.before.stars.triangle_of(id, ic) != kNone) continue;
                 const Point3 c = old_corner(t, i), d = old_corner(t, (i + 1) % 3);
                 if (!cross_properly(a.plan(), b.plan(), c.plan(), d.plan())) continue;
-                if (!gap_at_crossing_within(a, b, c, d, bound_))
-                    off("edge", a.plan(), gap_at_crossing(a, b, c, d));
+                if (gap_at_crossing_within(a, b, c, d, bound_)) continue;
+                const Point2 p = crossing_point(a.plan(), b.plan(), c.plan(), d.plan());
+                if (!is_between_parts(p)) off("edge", p, gap_at_crossing(a, b, c, d));
             }
         });
     }

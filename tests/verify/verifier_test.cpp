@@ -159,6 +159,8 @@ TEST_F(Planted, ANewVertexMovedOffItsSegmentAndItsFacetEdge) {
 TEST_F(Planted, AnElevationShifted) {
     MeshData mesh = after_;
     mesh.vertices[inner_new()].z += 1e-10;
+    EXPECT_FAULT(mesh, "CERTIFIED new vertex");
+    mesh.vertices[inner_new()].z += 1e-7;
     EXPECT_FAULT(mesh, "G2 new vertex");
     mesh = after_;
     mesh.vertices[7].z = std::nextafter(mesh.vertices[7].z, 10.0);
