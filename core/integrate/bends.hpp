@@ -25,7 +25,9 @@ class Bends {
         const std::size_t i = v.index() - first_;
         if (i >= bends_.size()) bends_.resize(i + 1, 0.0);
         bends_[i] = std::max(bends_[i], bend);
+        largest_ = std::max(largest_, bend);
     }
+    double largest() const { return largest_; }
 
     /// `first`: what the request's first new vertex will be.
     explicit Bends(std::size_t first) : first_(first) {}
@@ -33,6 +35,7 @@ class Bends {
   private:
     std::size_t first_;
     std::vector<double> bends_;
+    double largest_ = 0.0;
 };
 
 }  // namespace tinsmith::core

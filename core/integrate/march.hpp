@@ -78,6 +78,8 @@ class March {
     const MarchTally& tally() const { return tally_; }
     MarchTally& tally() { return tally_; }
     std::optional<Error>& error() { return error_; }
+    /// How far any vertex may be, in plan, off the edge between facets that it was put on.
+    double largest_bend() const;
     /// Vertices whose surroundings changed since the last call; the march forgets them.
     std::vector<VertexId>& changed() { return changed_; }
     /// Elevations that the paths bring, in order; the mesh has those of its surface until they are

@@ -12,14 +12,12 @@ namespace tinsmith::core {
 
 namespace {
 
-/// New vertices are off the old surface's edges by at most `4 ulp` in plan, which the slope turns
-/// into height, and elevations are interpolated to a few ulps of their own.
-double rounding_bound(const Tin& tin, double slope) {
-    const Bounds& box = tin.bounds();
-    const double plan = std::max(
-        {std::fabs(box.min.x), std::fabs(box.max.x), std::fabs(box.min.y), std::fabs(box.max.y)});
-    const double height = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
-    return 4.0 * ulp(plan) * slope + 8.0 * ulp(height);
+/// Whether the operation met a facet of several triangles.
+bool met_divided_facets(const Tin& tin, const UndoRecord& record) {
+    return std::any_of(record.triangles.begin(), record.triangles.end(), [&](const auto& entry) {
+        return std::any_of(entry.second.vertices.begin(), entry.second.vertices.end(),
+                           [&](VertexId v) { return v.index() >= tin.built_vertex_count(); });
+    });
 }
 
 }  // namespace
@@ -93,7 +91,7 @@ void ShapeIntegration::set_elevations() {
     }
 }
 
-ShapeReport ShapeIntegration::report() const {
+ShapeReport ShapeIntegration::report() {
     const MarchTally& tally = march_.tally();
     const UndoRecord& record = surgery_.record();
     const Tin& tin = surgery_.tin();
@@ -110,8 +108,22 @@ ShapeReport ShapeIntegration::report() const {
     const Measurement measured = measure_operation(tin, record);
     report.smallest_angle_deg = measured.smallest_angle_deg;
     if (report.vertices_added > 0 || report.edges_swapped > 0)
-        report.max_vertical_deviation = rounding_bound(tin, measured.steepest_slope);
+        report.max_vertical_deviation = certify(measured.steepest_slope);
     return report;
+}
+
+/// A bound on how far rounding moved the surface. A vertex put on an edge between facets is off it
+/// by a `bend` in plan, hence off either facet's plane by that times the slopes of both, and its
+/// elevation is rounded. Facets that had several triangles before were off their planes already:
+/// the surface there may move by what it was off and what it is.
+double ShapeIntegration::certify(double steepest_slope) {
+    const Tin& tin = surgery_.tin();
+    const Bounds& box = tin.bounds();
+    const double height = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
+    const double added = 2.0 * steepest_slope * march_.largest_bend() + 8.0 * ulp(height);
+    const double before = met_divided_facets(tin, surgery_.record()) ? tin.facet_error() : 0.0;
+    surgery_.raise_facet_error(before + added);
+    return before + (before + added);
 }
 
 }  // namespace tinsmith::core

@@ -30,12 +30,14 @@ class ShapeIntegration {
     const MarchTally& tally() const { return march_.tally(); }
     /// Vertices whose surroundings the march changed; kept for swaps across facets only.
     std::vector<VertexId>& changed() { return changed_; }
-    ShapeReport report() const;
+    /// What was done. Certifies it: to be asked once, at the end.
+    ShapeReport report();
 
   private:
     bool run(std::size_t index, const Path& path);
     void improve(std::size_t waiting);
     void set_elevations();
+    double certify(double steepest_slope);
 
     Surgery& surgery_;
     const IntegrateOptions& options_;

@@ -135,6 +135,10 @@ double March::bend_of(Side edge, Point2 p) const {
            std::fabs(compensated_doubled_area(a, b, p)) / std::sqrt(squared);
 }
 
+double March::largest_bend() const {
+    return std::max(bends_.largest(), kUsualBend * reach_of_rounding_);
+}
+
 /// Whether the edge may go through p: inside a facet always; between facets while what rounding
 /// moved it adds up to no more than half the reach of rounding.
 bool March::can_bend(Side edge, Point2 p) const {

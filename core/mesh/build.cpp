@@ -325,6 +325,7 @@ void TinBuilder::index() {
         tin_.boundary_.add(v, tin_.plan(v), tin_.plan(tin_.destination(s)));
     }
     tin_.components_ = find_components(tin_);
+    tin_.built_vertex_count_ = tin_.vertices_.size();
     index_hints();
 }
 

@@ -14,9 +14,10 @@ double elevation_in(const Tin& tin, TriangleId t, Point2 p) {
     const Tin::Vertex& a = tin.vertex(v0);
     const Tin::Vertex& b = tin.vertex(v1);
     const Tin::Vertex& c = tin.vertex(v2);
-    const double wa = doubled_area(b.plan(), c.plan(), p);
-    const double wb = doubled_area(c.plan(), a.plan(), p);
-    const double wc = doubled_area(a.plan(), b.plan(), p);
+    // A needle's areas are all cancellation: what a plain determinant leaves there would move z.
+    const double wa = compensated_doubled_area(b.plan(), c.plan(), p);
+    const double wb = compensated_doubled_area(c.plan(), a.plan(), p);
+    const double wc = compensated_doubled_area(a.plan(), b.plan(), p);
     const double sum = wa + wb + wc;
     // From the lowest corner up: weights of differences lose nothing to a large common elevation.
     const double base = std::min({a.z, b.z, c.z});

@@ -32,6 +32,7 @@ Surgery::Surgery(Tin& tin) : tin_(tin) {
     record_.triangle_count = tin.triangles_.size();
     record_.split_count = tin.constraint_splits_.size();
     record_.next_facet = tin.next_facet_;
+    record_.facet_error = tin.facet_error_;
     record_.bounds = tin.bounds_;
 }
 
@@ -269,6 +270,10 @@ void Surgery::set_elevation(VertexId v, double z) {
     box.max.z = std::max(box.max.z, z);
 }
 
+void Surgery::raise_facet_error(double error) {
+    tin_.facet_error_ = std::max(tin_.facet_error_, error);
+}
+
 FacetId Surgery::give_fresh_facet(TriangleId t) {
     return edit(t).facet = {tin_.next_facet_++};
 }
@@ -308,6 +313,7 @@ void Surgery::undo(Tin& tin, const UndoRecord& record) {
         tin.vertices_[entry->first.index()] = entry->second;
     tin.constraint_splits_.resize(record.split_count);
     tin.next_facet_ = record.next_facet;
+    tin.facet_error_ = record.facet_error;
     tin.bounds_ = record.bounds;
 }
 

@@ -45,6 +45,9 @@ class Surgery {
     /// Moves a vertex up or down. The facets around it are the caller's to renew.
     void set_elevation(VertexId v, double z);
 
+    /// Notes that vertices of a facet may be this far off its plane.
+    void raise_facet_error(double error);
+
     /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie
     /// in one plane with a neighbour.
     FacetId give_fresh_facet(TriangleId t);

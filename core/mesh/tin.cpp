@@ -8,6 +8,8 @@ namespace tinsmith::core {
 Tin::Tin(const Tin& other)
     : constraint_splits_(other.constraint_splits_),
       next_facet_(other.next_facet_),
+      facet_error_(other.facet_error_),
+      built_vertex_count_(other.built_vertex_count_),
       bounds_(other.bounds_),
       boundary_(other.boundary_),
       components_(other.components_),

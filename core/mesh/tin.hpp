@@ -104,6 +104,13 @@ class Tin {
         return !t.valid() || facet(s.triangle()) != facet(t.triangle());
     }
 
+    /// Certified: no vertex is farther above or below the plane of a facet around it, session unit.
+    /// Zero while no operation has put more triangles than one into a facet.
+    double facet_error() const { return facet_error_; }
+    /// Vertices with lower ids were there when the mesh was built. A triangle of three of them is
+    /// the whole of its facet.
+    std::size_t built_vertex_count() const { return built_vertex_count_; }
+
     /// Box around the vertices. Cost: O(1).
     const Bounds& bounds() const { return bounds_; }
 
@@ -142,6 +149,8 @@ class Tin {
     std::vector<Triangle> triangles_;
     std::vector<ConstraintSplit> constraint_splits_;
     std::uint32_t next_facet_ = 0;
+    double facet_error_ = 0.0;
+    std::size_t built_vertex_count_ = 0;
     Bounds bounds_;
     BoundaryIndex boundary_;
     std::vector<TriangleId> components_;

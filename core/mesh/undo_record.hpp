@@ -17,6 +17,7 @@ struct UndoRecord {
     std::size_t triangle_count = 0;
     std::size_t split_count = 0;  ///< of constraints
     std::uint32_t next_facet = 0;
+    double facet_error = 0.0;
     Bounds bounds;
     std::vector<std::pair<TriangleId, Tin::Triangle>> triangles;  ///< each old slot once
     std::vector<std::pair<VertexId, Tin::Vertex>> vertices;       ///< in order of change
