@@ -163,7 +163,7 @@ void March::step_along(Side edge, VertexId next) {
 
 /// How far along the input segment the position is, from 0 to 1.
 double March::share_along(Point2 p) const {
-    if (p == start_) return 0.0;
+    if (p == start_ || start_ == end_) return 0.0;
     if (p == end_) return 1.0;
     return std::clamp(along(p) / (length_ * length_), 0.0, 1.0);
 }
