@@ -68,15 +68,19 @@ bool March::advance(std::size_t to) {
         steps_ = 0;
         done = march_to_end();
     }
-    // A ring that snapped ends where it began, not at another vertex within snap of that.
-    if (done && to == 0 && at_.valid() && first_.valid() && at_ != first_) {
-        const Point2 end = end_;
-        set_snap(0.0);
-        set_segment(tin_.plan(at_), tin_.plan(first_));
-        from_ = to_;
-        done = march_to_end();
-        end_ = end;
-    }
+    set_snap(options_.snap);
+    return done;
+}
+
+/// A ring that snapped ends where it began, on the mesh or outside, not at another vertex within
+/// snap of that.
+bool March::march_home() {
+    const Point2 home = first_.valid() ? tin_.plan(first_) : path_->points.front();
+    if (tin_.plan(at_) == home) return true;
+    set_snap(0.0);
+    set_segment(tin_.plan(at_), home);
+    from_ = to_;
+    const bool done = march_to_end();
     set_snap(options_.snap);
     return done;
 }
@@ -129,9 +133,10 @@ bool March::has_arrived() const {
 }
 
 bool March::finish() {
+    const bool done = !path_->closed || !at_.valid() || at_ == first_ || march_home();
     if (!at_.valid()) close_outside();
     at_ = {};
-    return within_limits();
+    return done && within_limits();
 }
 
 /// Goes along an edge to its far end, or to the segment's end where that comes first.

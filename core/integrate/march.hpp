@@ -91,6 +91,7 @@ class March {
     void set_snap(double snap);
     void set_segment(Point2 start, Point2 end);
     bool march_to_end();
+    bool march_home();
     bool has_arrived() const;
     bool is_as_promised();
     bool follow(const Departure& departure);

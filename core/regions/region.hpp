@@ -38,6 +38,8 @@ struct Region {
 /// Laws: the lines that decide are the chains, vertex by vertex, and the input where it is outside
 /// the mesh. So the answer is exact for the mesh as it is, however far snapping moved the chains;
 /// swaps inside facets and later splits change its triangles, never its area beyond rounding.
+/// Where the mesh is narrower than the snap, a path that passes it need not cut it: what lies there
+/// is inside or outside as the largest triangle at the chain is.
 /// Requires: the history is of `tin` as it is now; see `ConstraintHistory::expand` for the chains.
 /// Cost: the chains with the triangles around them, and the region; nothing for what is outside.
 /// Memory: a bit for each triangle of the neighbourhood.

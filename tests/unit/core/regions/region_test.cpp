@@ -252,6 +252,27 @@ TEST(Region, FollowsItsChainsWhereSnappingMovedThem) {
     expect_area(region, enclosed);
 }
 
+TEST(Region, OfASnappedRingIsClosedHoweverItBeganAndEnded) {
+    const IntegrateOptions snapped{.snap = 0.75};
+    // Comes back to another post within snap of its beginning than the one it began at.
+    Tin tin = built(slope(10, 10));
+    EXPECT_NEAR(integrated(tin, {{box(2.4, 2.4, 4.6, 4.6)}}, snapped).region(tin).plan_area, 7.5,
+                2);
+    // Names its first point again at the end.
+    tin = built(slope(10, 10));
+    const Path again = closed({{2.4, 2.4}, {6.6, 2.4}, {6.6, 6.6}, {2.4, 6.6}, {2.4, 2.4}});
+    const Integrated twice = integrated(tin, {{again}}, snapped);
+    ASSERT_EQ(twice.report.chains.size(), 1u);
+    EXPECT_EQ(twice.report.chains[0].vertices.front(), twice.report.chains[0].vertices.back());
+    EXPECT_NEAR(twice.region(tin).plan_area, 4.2 * 4.2, 4 * 4.2 * 0.75);
+    // Begins outside, within snap of vertices inside.
+    tin = built(slope(10, 10));
+    const Path outside = closed({{-0.25, 2.9}, {5, 3.5}, {5, 6.5}, {0.3, 3.4}});
+    const Integrated home = integrated(tin, {{outside}}, {.snap = 0.5});
+    EXPECT_FALSE(home.report.outside.empty());
+    EXPECT_NEAR(home.region(tin).plan_area, 8, 5);
+}
+
 /// As the march leaves chains where rounding forbids to split the boundary: they end at a vertex
 /// beside it. Here that vertex is 1/64 away, and the region may be off by the triangles between.
 TEST(Region, OfAPathThatLeftTheMeshFromBesideTheBoundary) {
