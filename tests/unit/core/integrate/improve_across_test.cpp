@@ -163,6 +163,22 @@ TEST(ImproveAcross, AddsToWhatTheTrianglesCarryAlready) {
     EXPECT_EQ(bounded.improve(again, {VertexId{3}}).edges_swapped, 1u);
 }
 
+TEST(ImproveAcross, WhatEitherTriangleCarriesCounts) {
+    MeshData mesh = saddle(0.25);
+    mesh.vertices.push_back({1.05, 0.6, 0.17});
+    mesh.triangles.push_back({1, 4, 2});
+    Tin tin = built(mesh);
+    CrossFacetImprover improver;
+    Surgery surgery(tin);
+    surgery.set_locked(find_edge(tin, {1}, {2}), true);
+    ASSERT_EQ(improver.improve(surgery, {VertexId{3}}).edges_swapped, 1u);
+    surgery.set_locked(find_edge(tin, {1}, {2}), false);
+    // From vertex 4 the edge is seen from the sliver, which carries nothing.
+    const auto outcome = improver.improve(surgery, {VertexId{4}});
+    EXPECT_EQ(outcome.edges_swapped, 1u);
+    EXPECT_GT(outcome.max_deviation, 0.25);
+}
+
 TEST(ImproveAcross, InsideAFacetNothingIsCarriedAndTheFacetStays) {
     const MeshData mesh{{{0, 0, 0}, {100, 0, 30}, {0, 100, 70}}, {{0, 1, 2}}, {}};
     Tin tin = built(mesh);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/mesh/walk.hpp"
+#include "tests/support/quad.hpp"
 #include "tests/unit/core/fixtures.hpp"
 
 namespace tinsmith::core {
@@ -48,6 +49,28 @@ TEST(Elevation, NeverLeavesTheRangeOfTheCorners) {
         const double on = elevation_on(tin, {{0}, 0}, {number(random), 1e-9 * number(random)});
         ASSERT_GE(on, 100.1);
         ASSERT_LE(on, 100.3);
+    }
+}
+
+TEST(Elevation, IsRightToAFewUlpsInNarrowTriangles) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> share(0.1, 0.9);
+    for (const double width : {1.0, 1e-3, 1e-6, 1e-9, 1e-12}) {
+        for (int i = 0; i < 1000; ++i) {
+            const MeshData data{
+                {{0, 0, 1}, {3, 2, 5}, {1.5 - 2 * width, 1 + 3 * width, 7}}, {{0, 1, 2}}, {}};
+            const Tin tin = test::built(data);
+            const double along = share(random), up = share(random) * std::min(along, 1 - along);
+            const Point2 p{3 * along - 4 * width * up, 2 * along + 6 * width * up};
+            const auto& v = data.vertices;
+            const test::Quad a = test::area(v[1].plan(), v[2].plan(), p);
+            const test::Quad b = test::area(v[2].plan(), v[0].plan(), p);
+            const test::Quad c = test::area(v[0].plan(), v[1].plan(), p);
+            const test::Quad z =
+                (a * test::Quad(v[0].z) + b * test::Quad(v[1].z) + c * test::Quad(v[2].z)) /
+                (a + b + c);
+            ASSERT_NEAR(elevation_in(tin, {0}, p), static_cast<double>(z), 8e-15) << width;
+        }
     }
 }
 
