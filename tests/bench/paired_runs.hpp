@@ -39,10 +39,7 @@ struct PairedRuns {
     std::vector<double> ours;
     std::vector<double> points;
     std::vector<double> triangles;
-    // Tinsmith's own stages, from one run more with a clock.
-    double locate_ms = 0.0;
-    double integrate_ms = 0.0;
-    double improve_ms = 0.0;
+    double improving = 0.0;  ///< share of Tinsmith's time that goes into swaps for better triangles
 };
 
 /// Throws where Tinsmith refuses the shape. Requires: it is wholly on the mesh.
