@@ -20,7 +20,7 @@ constexpr const char* kUsage =
     "usage: peer_bench PART [RUNS]\n"
     "  bundled  the bundled terrain and polygons, and shorelines over 90 % of it\n"
     "  million  the same ground with 1,000,000 triangles\n"
-    "  large    the same ground with 10,000,000 triangles (needs 6 GB)\n"
+    "  large    the same ground with 10,000,000 triangles (needs 4 GB)\n"
     "  scaling  shorelines of 100 to 100,000 segments in the bundled terrain\n"
     "  memory   bytes a triangle at rest\n"
     "  smoke    one run of the bundled polygons; fails where the counts of new vertices differ\n";
