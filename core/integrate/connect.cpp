@@ -20,13 +20,13 @@ constexpr const char* kNoWay =
 /// are. Vertices met on the way, and ends of edges that rounding put into the way, become part of
 /// the chain, each within rounding of the input segment.
 bool March::connect(VertexId t) {
+    const VertexId from = at_;
     std::vector<VertexId> targets{t};
     while (!targets.empty()) {
         if (!within_budget()) return false;
         const VertexId target = targets.back();
         const Point2 goal = tin_.plan(target);
-        const bool is_passed = goal != end_ && along(goal) <= along(tin_.plan(at_));
-        if (at_ == target || tin_.plan(at_) == goal || is_passed) {
+        if (at_ == target || tin_.plan(at_) == goal || (at_ != from && is_passed(goal))) {
             targets.pop_back();
             continue;
         }
@@ -50,6 +50,11 @@ bool March::connect(VertexId t) {
         step_along(find_edge(tin_, *next, at_), *next);
     }
     return true;
+}
+
+/// Whether the march stands beyond the position, which is not the segment's end.
+bool March::is_passed(Point2 goal) const {
+    return goal != end_ && along(goal) <= along(tin_.plan(at_));
 }
 
 /// Whether `connect` finds a first step towards t.

@@ -61,6 +61,7 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
     if (const std::optional<VertexId> end = end_within(exit, reach_of_rounding_))
         return connect(*end);
+    if (const std::optional<VertexId> end = end_beside(exit)) return connect(*end);
     return fail(ErrorCode::NotRepresentable,
                 "no mesh of doubles holds this segment within rounding; move it a little");
 }
@@ -82,7 +83,27 @@ std::optional<Point2> March::find_split(Side edge) const {
             }
         }
     }
-    return best;
+    return best ? best : find_split_along(edge, p);
+}
+
+/// Where triangles beside the edge are too narrow at p for any double: the next place along the
+/// edge, away from p's nearer end, that is still within rounding of the input segment. There is one
+/// where the two run almost side by side.
+std::optional<Point2> March::find_split_along(Side edge, Point2 p) const {
+    const Point2 a = tin_.plan(tin_.origin(edge));
+    const Point2 b = tin_.plan(tin_.destination(edge));
+    const bool a_is_nearer =
+        std::fabs(p.x - a.x) + std::fabs(p.y - a.y) < std::fabs(p.x - b.x) + std::fabs(p.y - b.y);
+    const Point2 far = a_is_nearer ? b : a;
+    const double length = std::sqrt((far.x - p.x) * (far.x - p.x) + (far.y - p.y) * (far.y - p.y));
+    for (double step = reach_of_rounding_; step < length; step *= 2.0) {
+        const Point2 q{p.x + (far.x - p.x) * (step / length),
+                       p.y + (far.y - p.y) * (step / length)};
+        if (distance_to_segment(q, start_, end_) > reach_of_rounding_) return {};
+        if (at_.valid() && along(q) <= along(tin_.plan(at_))) return {};
+        if (can_split(edge, q)) return q;
+    }
+    return {};
 }
 
 /// Where the input segment crosses the edge. A vertex that rounding or a snap put beside the
@@ -202,6 +223,22 @@ std::optional<VertexId> March::end_within(Side edge, double distance) const {
 bool March::is_ahead_within_snap(VertexId v) const {
     const Point2 p = tin_.plan(v);
     return is_near_segment(p, snap_) && along(p) > along(tin_.plan(at_));
+}
+
+/// An end of the edge that is one with the vertex where the march stands, to within rounding, and
+/// that this segment did not step to for that before.
+std::optional<VertexId> March::end_beside(Side edge) {
+    const Point2 here = tin_.plan(at_);
+    for (const VertexId v : {tin_.origin(edge), tin_.destination(edge)}) {
+        const Point2 p = tin_.plan(v);
+        if (v == at_ || std::find(detours_.begin(), detours_.end(), v) != detours_.end()) continue;
+        if (!is_near_segment(p, reach_of_rounding_)) continue;
+        if (std::max(std::fabs(p.x - here.x), std::fabs(p.y - here.y)) > reach_of_rounding_)
+            continue;
+        detours_.push_back(v);
+        return v;
+    }
+    return {};
 }
 
 /// Whether p is within the distance of the input segment. Filtered like `is_near_edge`.

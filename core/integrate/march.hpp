@@ -119,6 +119,7 @@ class March {
     // crossing.cpp
     bool cross_facet_edge(Side exit, bool needs_swaps);
     std::optional<Point2> find_split(Side edge) const;
+    std::optional<Point2> find_split_along(Side edge, Point2 p) const;
     Point2 intersection(Side edge) const;
     Point2 crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) const;
     bool can_split(Side edge, Point2 p) const;
@@ -128,12 +129,14 @@ class March {
     bool absorb(Side edge);
     bool absorb_needle_at(Side edge);
     std::optional<VertexId> end_within(Side edge, double distance) const;
+    std::optional<VertexId> end_beside(Side edge);
     bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
     void measure(Point2 p);
 
     // connect.cpp
     bool connect(VertexId t);
+    bool is_passed(Point2 goal) const;
     bool has_way(VertexId t);
     std::optional<VertexId> collect_corridor(VertexId t);
     Side edge_on_way(double limit) const;
