@@ -12,6 +12,14 @@ namespace tinsmith::core {
 
 using enum Orientation;
 
+namespace {
+
+bool is_within(Point2 p, Point2 q, double distance) {
+    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) <= distance * distance;
+}
+
+}  // namespace
+
 March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
              Bends& bends)
     : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits), bends_(bends) {
@@ -115,10 +123,15 @@ bool March::march_to_end() {
                 if (!cross(departure.side)) return false;
                 break;
             case Departure::Kind::Outside:
-                if (const Side edge = edge_on_way(along(end_)); edge.valid())
+                if (const Side edge = edge_on_way(along(end_)); edge.valid()) {
                     step_along(edge, far_end(edge));
-                else
+                } else if (is_within(tin_.plan(at_), end_, near_)) {
+                    // The end is outside, but one with this vertex to within rounding.
+                    log_elevation(1.0);
+                    return is_as_promised();
+                } else if (!enter_other_fan()) {
                     leave_mesh();
+                }
                 break;
         }
     }

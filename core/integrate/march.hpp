@@ -158,6 +158,7 @@ class March {
     bool enter_by(const Entry& entry);
     Location locate_on_boundary(Point2 p) const;
     void visit_boundary(VertexId v);
+    bool enter_other_fan();
     void leave_mesh();
     void close_outside();
     double along(Point2 p) const;

@@ -150,6 +150,42 @@ void March::visit_boundary(VertexId v) {
     farthest_visit_ = std::max(farthest_visit_, along(tin_.plan(v)));
 }
 
+/// Where fans touch in one position, a vertex that is on one of them to within rounding may lie
+/// inside another, by exact predicates: stands on a vertex there, once from each vertex. False:
+/// there is no such fan.
+bool March::enter_other_fan() {
+    if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end()) return false;
+    const Point2 p = tin_.plan(at_);
+    Location found;
+    const auto look_in = [&](Side side) {
+        if (!side.valid() || found.kind != Location::Kind::Outside) return;
+        const auto& corners = tin_.triangle(side.triangle()).vertices;
+        if (std::find(corners.begin(), corners.end(), at_) != corners.end()) return;
+        Location here{Location::Kind::InTriangle, side, {}};
+        for (unsigned i = 0; i < 3; ++i) {
+            const Orientation turn =
+                orientation(tin_.plan(corners[i]), tin_.plan(corners[Side::next_of(i)]), p);
+            if (turn == Clockwise || tin_.plan(corners[i]) == p) return;
+            if (turn == Collinear) here = {Location::Kind::OnEdge, {side.triangle(), i}, {}};
+        }
+        found = here;
+    };
+    for (const VertexId v : tin_.boundary().near(p, p)) {
+        if (v.index() >= tin_.vertex_count() || v == at_) continue;
+        for_each_side_at(tin_, v, [&](Side side) {
+            look_in(side);
+            look_in(tin_.twin(side));
+        });
+    }
+    if (found.kind == Location::Kind::Outside) return false;
+    detours_.push_back(at_);
+    visit_boundary(at_);
+    tally_.chains.push_back({path_index_, {}});
+    stand_on(place(found, p));
+    detours_.push_back(at_);
+    return true;
+}
+
 /// Leaves the mesh from the vertex where the march stands.
 void March::leave_mesh() {
     visit_boundary(at_);
