@@ -29,7 +29,7 @@ class CaseFile : public testing::TestWithParam<std::string> {};
 TEST_P(CaseFile, KeepsAllGuarantees) {
     const test::Case replayed = test::read_case_file(GetParam());
     EXPECT_FALSE(replayed.requests.empty());
-    const test::Verdict verdict = test::replay(replayed, {});
+    const test::Verdict verdict = test::replay(replayed);
     for (const std::string& fault : verdict.broken)
         ADD_FAILURE() << GetParam() << ": " << fault;
 }

@@ -32,13 +32,19 @@ bool one_in(Random& random, int count) {
 
 }  // namespace
 
-Allowance allowance_of(MeshKind kind) {
+std::uint64_t unrepresentable_per_million(MeshKind kind) {
     switch (kind) {
-        case MeshKind::FarAway:
+        case MeshKind::Grid:
+        case MeshKind::Steep:
+            return 0;
+        case MeshKind::Map:
+            return 1000;
+        case MeshKind::Strips:
+            return 1500;
         case MeshKind::Needles:
-            return {1, 2000};
+            return 3000;
         default:
-            return {};
+            return 500;
     }
 }
 
@@ -47,11 +53,6 @@ RandomCase::RandomCase(std::uint64_t seed) : random_(seed) {
     const int columns = 1 + pick(random_, 9);
     mesh_ = random_mesh(random_, kind_, columns);
     if (!mesh_.triangles.empty()) left_ = 1 + pick(random_, 3);
-}
-
-Leniency RandomCase::leniency() const {
-    const Allowance allowance = allowance_of(kind_);
-    return {allowance.unrepresentable > 0, allowance.forced};
 }
 
 Request RandomCase::next(const core::MeshData& now) {

@@ -7,12 +7,9 @@
 
 namespace tinsmith::test {
 
-/// What is let pass on meshes of a kind. These numbers only ever shrink.
-struct Allowance {
-    std::size_t forced = 0;        ///< vertices at one place beyond those that G8 counts
-    double unrepresentable = 0.0;  ///< requests refused for that, of a million
-};
-Allowance allowance_of(MeshKind kind);
+/// Of a million requests on meshes of a kind, how many may be refused because no mesh of doubles
+/// was found to hold them. These numbers only ever shrink.
+std::uint64_t unrepresentable_per_million(MeshKind kind);
 
 /// What a seed stands for: a mesh, and a few requests that may look at the mesh as it is by then.
 class RandomCase {
@@ -21,7 +18,6 @@ class RandomCase {
 
     MeshKind kind() const { return kind_; }
     const core::MeshData& mesh() const { return mesh_; }
-    Leniency leniency() const;
     bool more() const { return left_ > 0; }
     Request next(const core::MeshData& now);
 

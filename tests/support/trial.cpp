@@ -1,35 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/trial.hpp"
 
-#include <cstring>
-
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
 #include "tests/support/guarantees.hpp"
+#include "tests/support/same_bytes.hpp"
 
 namespace tinsmith::test {
 
 using core::ErrorCode;
 using core::MeshData;
 
-namespace {
-
-bool same_bytes(const MeshData& a, const MeshData& b) {
-    const auto same = [](const auto& l, const auto& r) {
-        return l.size() == r.size() &&
-               (l.empty() || std::memcmp(l.data(), r.data(), l.size() * sizeof l[0]) == 0);
-    };
-    return same(a.vertices, b.vertices) && same(a.triangles, b.triangles) &&
-           same(a.constraints, b.constraints);
-}
-
-}  // namespace
-
 std::string Verdict::kind() const {
     return broken.empty() ? "" : broken.front().substr(0, broken.front().find_first_of(" :"));
 }
 
-Trial::Trial(const MeshData& mesh, Leniency leniency) : leniency_(leniency) {
+Trial::Trial(const MeshData& mesh) {
     auto built = core::build_tin(mesh);
     if (!built) {
         broken_.push_back("MESH was refused: " + built.errors()[0].detail);
@@ -45,23 +31,22 @@ Verdict Trial::apply(const Request& request) {
     if (!report) {
         verdict.refused = true;
         const ErrorCode code = report.errors()[0].code;
-        verdict.unrepresentable = code == ErrorCode::NotRepresentable && leniency_.unrepresentable;
         const bool may_leave =
             code == ErrorCode::LeavesMesh && request.options.outside == core::Outside::Reject;
         if (!same_bytes(verifier_->mesh(), tin_->to_data()))
             verdict.broken.push_back("G6 a refused request changed the mesh");
-        else if (code != ErrorCode::OutsideMesh && !may_leave && !verdict.unrepresentable)
+        else if (code != ErrorCode::OutsideMesh && !may_leave)
             verdict.broken.push_back(std::string(code_name(code)) + ": " +
                                      report.errors()[0].detail);
         return verdict;
     }
-    verdict.broken = check_guarantees(*verifier_, {request.shapes, request.options, *report, *tin_},
-                                      leniency_.forced);
+    verdict.broken =
+        check_guarantees(*verifier_, {request.shapes, request.options, *report, *tin_});
     return verdict;
 }
 
-Verdict replay(const Case& replayed, Leniency leniency) {
-    Trial trial(replayed.mesh, leniency);
+Verdict replay(const Case& replayed) {
+    Trial trial(replayed.mesh);
     Verdict verdict;
     verdict.broken = trial.broken();
     for (const Request& request : replayed.requests) {

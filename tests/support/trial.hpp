@@ -11,17 +11,10 @@
 
 namespace tinsmith::test {
 
-/// What is let pass, in meshes whose detail is some ulps wide.
-struct Leniency {
-    bool unrepresentable = false;  ///< a request may be refused because no mesh of doubles holds it
-    std::size_t forced = 0;        ///< vertices at one place beyond those that G8 counts
-};
-
 /// What came of one request.
 struct Verdict {
     std::vector<std::string> broken;  ///< guarantees, in words; the first word names which
     bool refused = false;
-    bool unrepresentable = false;  ///< refused for that, and let pass
 
     /// The word that two failures of one kind share: "G2", "STEP_BUDGET"; empty for none.
     std::string kind() const;
@@ -31,20 +24,21 @@ struct Verdict {
 class Trial {
   public:
     /// Empty with `broken()` set where the mesh is refused.
-    Trial(const core::MeshData& mesh, Leniency leniency);
+    explicit Trial(const core::MeshData& mesh);
 
     const std::vector<std::string>& broken() const { return broken_; }
     const core::MeshData& mesh() const { return verifier_->mesh(); }
+    /// Requires: the mesh was not refused.
+    const core::Tin& tin() const { return *tin_; }
     Verdict apply(const Request& request);
 
   private:
     std::optional<core::Tin> tin_;
     std::optional<verify::Verifier> verifier_;
-    Leniency leniency_;
     std::vector<std::string> broken_;
 };
 
 /// The first verdict of the case's requests that is not good, else the last.
-Verdict replay(const Case& replayed, Leniency leniency);
+Verdict replay(const Case& replayed);
 
 }  // namespace tinsmith::test

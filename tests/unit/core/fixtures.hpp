@@ -12,6 +12,7 @@
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
 #include "tests/support/guarantees.hpp"
+#include "tests/support/same_bytes.hpp"
 
 namespace tinsmith::test {
 
@@ -67,15 +68,6 @@ inline core::Shape line(std::vector<core::Point2> points) {
 
 inline core::Shape ring(std::vector<core::Point2> points) {
     return {{{std::move(points), true}}};
-}
-
-inline bool same_bytes(const core::MeshData& a, const core::MeshData& b) {
-    const auto same = [](const auto& l, const auto& r) {
-        return l.size() == r.size() &&
-               (l.empty() || std::memcmp(l.data(), r.data(), l.size() * sizeof l[0]) == 0);
-    };
-    return same(a.vertices, b.vertices) && same(a.triangles, b.triangles) &&
-           same(a.constraints, b.constraints);
 }
 
 /// Slots too, not just what `to_data` shows.
