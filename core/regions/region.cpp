@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/mesh/triangle_map.hpp"
 #include "core/mesh/triangle_set.hpp"
 #include "core/mesh/walk.hpp"
 #include "core/predicates/orientation.hpp"
@@ -24,7 +25,10 @@ class RegionSearch {
   public:
     RegionSearch(const Tin& tin, const ConstraintHistory& history, const Outline& outline,
                  Winding winding)
-        : tin_(tin), winding_(winding), seen_(tin.triangle_count()) {
+        : tin_(tin),
+          winding_(winding),
+          place_in_belt_(tin.triangle_count()),
+          seen_(tin.triangle_count()) {
         collect_lines(history, outline);
         close_joints();
         settle_jumps();
@@ -128,17 +132,15 @@ class RegionSearch {
 
     /// The triangles at the chains' vertices.
     void collect_belt() {
-        for (const VertexId v : vertices_)
-            for_each_side_at(tin_, v, [this](Side s) { belt_.push_back(s.triangle()); });
-        std::sort(belt_.begin(), belt_.end());
-        belt_.erase(std::unique(belt_.begin(), belt_.end()), belt_.end());
+        for (const VertexId v : vertices_) {
+            for_each_side_at(tin_, v, [this](Side s) {
+                std::uint32_t& place = place_in_belt_.at(s.triangle());
+                if (place != 0) return;
+                belt_.push_back(s.triangle());
+                place = static_cast<std::uint32_t>(belt_.size());
+            });
+        }
         belt_winding_.assign(belt_.size(), 0);
-    }
-
-    std::optional<std::size_t> place_in_belt(TriangleId t) const {
-        const auto found = std::lower_bound(belt_.begin(), belt_.end(), t);
-        if (found == belt_.end() || *found != t) return {};
-        return static_cast<std::size_t>(found - belt_.begin());
     }
 
     void settle_belt(const WindingNumber& number) {
@@ -152,11 +154,11 @@ class RegionSearch {
                 for (unsigned i = 0; i < 3; ++i) {
                     const Side side(belt_[group[k]], i);
                     if (!tin_.twin(side).valid()) continue;
-                    const auto next = place_in_belt(tin_.twin(side).triangle());
-                    if (!next || reached[*next]) continue;
-                    reached[*next] = true;
-                    belt_winding_[*next] = belt_winding_[group[k]] - jump(side);
-                    group.push_back(*next);
+                    const std::uint32_t place = place_in_belt_.value(tin_.twin(side).triangle());
+                    if (place == 0 || reached[place - 1]) continue;
+                    reached[place - 1] = true;
+                    belt_winding_[place - 1] = belt_winding_[group[k]] - jump(side);
+                    group.push_back(place - 1);
                 }
             }
             const int base = unknown_of(group, number);
@@ -203,9 +205,10 @@ class RegionSearch {
     std::vector<VertexId> vertices_;                ///< of the chains, each once, in order
     std::vector<DirectedSegment> segments_;         ///< all lines that decide
     std::vector<std::pair<VertexId, int>> joints_;  ///< chains that end there, less that start
-    std::vector<std::pair<Side, int>> jumps_;  ///< winding on the side's left less on its right
-    std::vector<TriangleId> belt_;             ///< triangles at the chains, in order
-    std::vector<int> belt_winding_;            ///< theirs
+    std::vector<std::pair<Side, int>> jumps_;   ///< winding on the side's left less on its right
+    std::vector<TriangleId> belt_;              ///< triangles at the chains, in order of these
+    TriangleMap<std::uint32_t> place_in_belt_;  ///< from 1 on; 0: not there
+    std::vector<int> belt_winding_;             ///< theirs
     TriangleSet seen_;
     std::vector<TriangleId> found_;
 };

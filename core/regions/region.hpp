@@ -42,7 +42,7 @@ struct Region {
 /// is inside or outside as the largest triangle at the chain is.
 /// Requires: the history is of `tin` as it is now; see `ConstraintHistory::expand` for the chains.
 /// Cost: the chains with the triangles around them, and the region; nothing for what is outside.
-/// Memory: a bit for each triangle of the neighbourhood.
+/// Memory: a few bytes for each triangle at the chains, a bit for each of the region, in pages.
 Region find_region(const Tin& tin, const ConstraintHistory& history, const Outline& outline,
                    Winding winding);
 
