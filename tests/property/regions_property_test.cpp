@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Regions on random meshes and shapes of every kind: each triangle is asked on its own whether its
 // centroid is inside the input, in quadruple precision and without any code of the core.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -182,7 +183,7 @@ std::string try_seed(std::uint64_t seed, Counts& counts) {
     for (std::uint64_t round = 1 + random() % 4; round > 0; --round) {
         Kept made{random_parts(random, data), {}, {}, 0.0};
         IntegrateOptions options;
-        options.improve = random() % 3 == 0 ? Improve::None : Improve::Strict;
+        options.improve = std::array{Improve::None, Improve::Strict, Improve::Paper}[random() % 3];
         if (random() % 3 == 0)
             made.snap = test::uniform(random, 0.0, 0.05) * (box.max.y - box.min.y);
         options.snap = made.snap;

@@ -210,12 +210,11 @@ Tin facet_with_long_edges() {
     return tin;
 }
 
-TEST(LockedEdges, SurviveStrictImprovement) {
-    // One edge at a time that a later request would swap: locked, it is not.
-    const Tin rough = facet_with_long_edges();
-    const Shape later = test::line({{4, 20}, {60, 20.5}});
+/// One edge at a time that a later request would swap: locked, it is not.
+void expect_locks_to_survive(const Tin& rough, const Shape& later, Improve improve) {
+    const IntegrateOptions options{.improve = improve};
     Tin free = rough;
-    ASSERT_TRUE(integrate(free, {&later, 1}, {}).ok());
+    ASSERT_TRUE(integrate(free, {&later, 1}, options).ok());
     std::size_t kept = 0;
     for (std::uint32_t t = 0; t < rough.triangle_count(); ++t) {
         for (unsigned i = 0; i < 3; ++i) {
@@ -225,7 +224,7 @@ TEST(LockedEdges, SurviveStrictImprovement) {
             Tin tin = rough;
             lock(tin, path({rough.plan(v), rough.plan(w)}));
             const LockReport found = lock(tin, path({rough.plan(v), rough.plan(w)}));
-            ASSERT_TRUE(integrate(tin, {&later, 1}, {}).ok());
+            ASSERT_TRUE(integrate(tin, {&later, 1}, options).ok());
             EXPECT_TRUE(check_tin(tin).empty());
             // Whole or split, the line from v to w is locked edges still.
             const LockReport after = lock(tin, path({rough.plan(v), rough.plan(w)}));
@@ -236,6 +235,16 @@ TEST(LockedEdges, SurviveStrictImprovement) {
         }
     }
     EXPECT_GT(kept, 0u);
+}
+
+TEST(LockedEdges, SurviveStrictImprovement) {
+    expect_locks_to_survive(facet_with_long_edges(), test::line({{4, 20}, {60, 20.5}}),
+                            Improve::Strict);
+}
+
+TEST(LockedEdges, SurviveImprovementAcrossFacets) {
+    const Tin rough = built(grid(6, 6, test::Diagonals::Alternate));
+    expect_locks_to_survive(rough, test::line({{0.2, 3.1}, {5.7, 3.3}}), Improve::Paper);
 }
 
 TEST(LockedEdges, AreSplitByWhatCrossesThemAndBothHalvesStayLocked) {
