@@ -80,17 +80,7 @@ void Improver::improve(const std::vector<VertexId>& vertices) {
 /// Adds the edges at the vertex, and those across from it in its triangles.
 void Improver::add_star(VertexId v) {
     const std::uint32_t newest = std::max(v.value, static_cast<std::uint32_t>(seen_ - 1));
-    const Side start = side_from(tin_, v);
-    Side s = start;
-    do {  // counter-clockwise
-        add_at(s, newest);
-        s = tin_.twin(s.previous());
-    } while (s.valid() && s != start);
-    if (s.valid()) return;
-    for (s = tin_.twin(start); s.valid(); s = tin_.twin(s)) {
-        s = s.next();
-        add_at(s, newest);
-    }
+    for_each_side_at(tin_, v, [this, newest](Side s) { add_at(s, newest); });
 }
 
 /// Adds the side and the next one, where they may be swapped, unless one of the edge's four corners

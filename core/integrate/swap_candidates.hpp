@@ -25,19 +25,10 @@ class SwapCandidates {
 
     /// The edges at the vertex, and those across from it in its triangles.
     void add_around(VertexId v) {
-        const Side start = side_from(tin_, v);
-        Side s = start;
-        do {  // counter-clockwise
+        for_each_side_at(tin_, v, [this](Side s) {
             add(s);
             add(s.next());
-            s = tin_.twin(s.previous());
-        } while (s.valid() && s != start);
-        if (s.valid()) return;
-        for (s = tin_.twin(start); s.valid(); s = tin_.twin(s)) {
-            s = s.next();
-            add(s);
-            add(s.next());
-        }
+        });
     }
 
     /// The four edges around the two triangles beside the edge, after it was swapped.
