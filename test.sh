@@ -7,7 +7,8 @@ usage() {
     cat <<'TEXT'
 Usage: ./test.sh [PART...]    installs what is missing, builds, tests; the fast parts first
 
-  fast        formatting, then every test program on the release build
+  fast        formatting, then every test program on the release build, then the same
+              operations by other compilers and options: the same bytes
   readme      the README's curl lines against a server of its own
   node        what other people's readers say of our files (tests/*/package.json)
   sanitizers  every test again under ASan and UBSan, server and end-to-end tests under TSan
@@ -106,6 +107,8 @@ part_fast() {
     heading "formatting"
     check formatting check_format
     build release && run_ctest release
+    heading "the same bytes from every compiler"
+    check digest tests/digest/compare.sh build/release/tests/digest/operation_digest
 }
 
 # Starts a server on a free port, runs the README's lines against it, stops it.
