@@ -23,14 +23,14 @@ struct Defect {
 };
 constexpr std::array kOpen{
     Defect{"G3", 200},          // path_along_the_other_fan_is_lost and its like
-    Defect{"G8", 600},          // snap_spike_in_strips_more_vertices_than_reasons, ...
+    Defect{"G8", 800},          // snap_spike_in_strips_more_vertices_than_reasons, ...
     Defect{"STEP_BUDGET", 60},  // march_without_end_at_a_needle, ...
 };
 
 class IntegrateProperty : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(IntegrateProperty, GuaranteesHoldOnRandomMeshesAndShapes) {
-    test::SeedRun run(GetParam(), 50'000);
+    test::SeedRun run(GetParam(), 100'000);
     std::uint64_t refused = 0;
     std::array<std::uint64_t, test::kMeshKinds> of_kind{};
     while (run.more()) {

@@ -18,7 +18,11 @@ using core::Tin;
 
 namespace {
 
-bool is_draped(const Request& request) {
+/// Whether the request leaves the surface as it is.
+bool keeps_surface(const Request& request) {
+    if (request.options.improve != core::Improve::None &&
+        request.options.improve != core::Improve::Strict)
+        return false;
     for (const auto& shape : request.shapes)
         for (const Path& path : shape.paths)
             if (!path.elevations.empty()) return false;
@@ -77,7 +81,7 @@ std::vector<std::string> check_laws(const Tin& tin, const Request& request) {
         broken.push_back("COPY: a walk from elsewhere gives other bytes");
 
     const std::string twice = request.options.snap > 0.0 ? "TWICE_SNAPPED: " : "TWICE: ";
-    if (is_draped(request)) {
+    if (keeps_surface(request)) {
         const auto again = core::integrate(other, request.shapes, request.options);
         if (!again)
             broken.push_back(twice + "refused the second time: " + again.errors()[0].detail);
@@ -86,7 +90,7 @@ std::vector<std::string> check_laws(const Tin& tin, const Request& request) {
                                            other.vertex_count() - first.vertex_count(),
                                            " vertices"));
     }
-    if (is_draped(request) && request.options.improve == core::Improve::None &&
+    if (keeps_surface(request) && request.options.improve == core::Improve::None &&
         request.options.snap == 0.0) {
         Tin turned = tin;
         const Request backwards = reversed(request);

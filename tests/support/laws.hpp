@@ -14,7 +14,7 @@ namespace tinsmith::test {
 ///   COPY: a copy of the mesh, and a walk from elsewhere, give the same bytes;
 ///   UNDO: taking the operation back restores the bytes;
 ///   TWICE, or TWICE_SNAPPED with a snap distance: the same request again adds nothing (draped
-///   paths);
+///   paths, Improve::None or Strict);
 ///   REVERSED: closed paths turned round and begun elsewhere give the same vertices in plan, to
 ///   within rounding (Improve::None, draped paths, no snap). By G2 the surface is the same too.
 std::vector<std::string> check_laws(const core::Tin& tin, const Request& request);

@@ -11,7 +11,8 @@ using core::Improve;
 namespace {
 
 /// What requests ask for, each line as often as it is listed.
-constexpr std::array kImproves{Improve::None, Improve::Strict, Improve::Strict};
+constexpr std::array kImproves{Improve::None,   Improve::None,  Improve::Strict, Improve::Strict,
+                               Improve::Strict, Improve::Paper, Improve::Bounded};
 /// One request in so many has it; 0: none has.
 constexpr int kSnapsOneIn = 4;
 constexpr int kOwnElevationsOneIn = 5;
@@ -26,6 +27,13 @@ double random_snap(Random& random, const core::MeshData& mesh) {
     return side * std::pow(10.0, uniform(random, -6.0, -0.5));
 }
 
+/// From far below the relief of the mesh to all of it.
+double random_deviation(Random& random, const core::MeshData& mesh) {
+    const auto& [a, b, c] = mesh.triangles[random() % mesh.triangles.size()];
+    const double relief = std::fabs(mesh.vertices[a].z - mesh.vertices[b].z);
+    return relief * std::pow(10.0, uniform(random, -6.0, 0.0));
+}
+
 bool one_in(Random& random, int count) {
     return count > 0 && pick(random, count) == 0;
 }
@@ -37,6 +45,7 @@ std::uint64_t unrepresentable_per_million(MeshKind kind) {
         case MeshKind::Grid:
         case MeshKind::Steep:
             return 0;
+        case MeshKind::Delaunay:
         case MeshKind::Map:
             return 1000;
         case MeshKind::Strips:
@@ -67,6 +76,7 @@ Request RandomCase::next(const core::MeshData& now) {
     }
     core::IntegrateOptions& options = request.options;
     options.improve = kImproves[random_() % kImproves.size()];
+    if (options.improve == Improve::Bounded) options.max_deviation = random_deviation(random_, now);
     if (one_in(random_, kSnapsOneIn)) options.snap = random_snap(random_, now);
     options.lock = one_in(random_, kLocksOneIn);
     if (one_in(random_, kRejectsOneIn)) options.outside = core::Outside::Reject;

@@ -36,6 +36,11 @@ Faults check_surface(const Edit& edit, const Change& change);
 /// each constraint from before; no other edge is constrained.
 Faults check_chains(const Edit& edit);
 
+/// OWN: each vertex of a chain along a path with elevations of its own has the elevation of such a
+/// path there. Not looked at where old constraints keep theirs, nor with a snap distance, where
+/// what is near cannot be told from what is meant.
+Faults check_elevations(const Edit& edit);
+
 /// For `forced`: vertices are not counted.
 inline constexpr std::size_t kUncounted = SIZE_MAX;
 

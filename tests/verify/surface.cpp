@@ -56,8 +56,10 @@ class Comparison {
                 const std::uint32_t a = edit_.after.data.triangles[t][i];
                 const std::uint32_t b = edit_.after.data.triangles[t][(i + 1) % 3];
                 // Each edge from one side; the ends' elevations are all that it has.
-                const bool mine = a < b || edit_.after.stars.triangle_of(b, a) == kNone;
-                if (mine && !is_set(a) && !is_set(b)) compare_edge(a, b, edge++);
+                const std::uint32_t twin = edit_.after.stars.triangle_of(b, a);
+                const bool mine = a < b || twin == kNone;
+                if (mine && !is_set(a) && !is_set(b) && !is_between_set(t, twin))
+                    compare_edge(a, b, edge++);
             }
         }
         return std::move(faults_);
@@ -90,6 +92,20 @@ class Comparison {
         }
     }
     bool is_set(std::uint32_t v) const { return !is_set_.empty() && is_set_[v]; }
+
+    /// Whether both triangles of an edge touch a vertex that was set. Swaps across facets may put
+    /// an edge there that lies on the lifted surface.
+    bool is_between_set(std::uint32_t t, std::uint32_t twin) const {
+        if (is_set_.empty() || edit_.options.improve == Improve::None ||
+            edit_.options.improve == Improve::Strict)
+            return false;
+        const auto touches = [this](std::uint32_t triangle) {
+            const auto& corners = edit_.after.data.triangles[triangle];
+            return std::any_of(corners.begin(), corners.end(),
+                               [this](std::uint32_t v) { return is_set(v); });
+        };
+        return touches(t) && (twin == kNone || touches(twin));
+    }
 
     void off(const char* what, Point2 p, double gap) {
         const char* which = gap > promised_ ? "G2 " : "CERTIFIED ";

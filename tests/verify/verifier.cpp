@@ -41,13 +41,17 @@ Faults Verifier::step(core::MeshData after, std::span<const core::Shape> shapes,
     const bool comparable = bending == shapes.end() || bending + 1 == shapes.end();
     if (faults.empty() && comparable) append(faults, check_surface(edit, change));
     append(faults, check_chains(edit));
+    if (comparable) append(faults, check_elevations(edit));
     // Facets outlive requests, so the mesh's edges are those of the first mesh, and the segments
-    // all that were given since; but new elevations bend the surface along edges of the new mesh.
+    // all that were given since; but new elevations and swaps across facets bend the surface along
+    // edges of the new mesh.
+    const bool swaps =
+        options.improve == core::Improve::Paper || options.improve == core::Improve::Bounded;
     all_.insert(all_.end(), shapes.begin(), shapes.end());
     widest_reach_ = std::max(widest_reach_, 2 * chain_reach(edit));
-    if (forced != kUncounted && comparable)
+    if (forced != kUncounted && comparable && (!swaps || shapes.size() == 1))
         append(faults, check_economy(*origin_, next->data, all_, widest_reach_, forced));
-    if (bending != shapes.end()) {
+    if (swaps || bending != shapes.end()) {
         origin_ = next;
         all_.clear();
         widest_reach_ = 0.0;

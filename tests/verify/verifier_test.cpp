@@ -266,6 +266,28 @@ TEST_F(Planted, AnOutlineCutShort) {
     EXPECT_NE(found(mesh), "nothing");
 }
 
+TEST_F(Planted, AnElevationThatNoPathBrings) {
+    // The ring brings the elevations that it has on the surface; then one that it has not.
+    const auto elevation_at = [this](Point2 p) {
+        for (const Point3& v : after_.vertices)
+            if (v.plan() == p) return v.z;
+        return -1.0;
+    };
+    core::Path& ring = shapes_[0].paths[0];
+    for (const Point2 p : ring.points)
+        ring.elevations.push_back(elevation_at(p));
+    shapes_.pop_back();
+    auto tin = core::build_tin(before_);
+    const auto report = core::integrate(*tin, shapes_, options_);
+    ASSERT_TRUE(report.ok());
+    certified_ = report->shapes[0].max_vertical_deviation;
+    after_ = tin->to_data();
+    EXPECT_EQ(check(after_), Faults{});
+    MeshData mesh = after_;
+    mesh.vertices[inner_new()].z += 1e-6;
+    EXPECT_FAULT(mesh, "OWN vertex");
+}
+
 TEST_F(Planted, ASegmentThatIsNotThere) {
     shapes_.push_back({{{{{101.0, 200.5}, {101.0, 200.75}}, false}}});
     EXPECT_FAULT(after_, "G3 segment from 101 200.5");
