@@ -46,7 +46,11 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
     if (const std::optional<Point2> p = find_split(exit)) {
         count_crossing(exit);
-        return reach(place({Location::Kind::OnEdge, exit, {}}, *p), needs_swaps);
+        const VertexId v = place_on(exit, *p);
+        way_on_ = tin_.twin(exit);  // on the far side, where the way goes on
+        if (needs_swaps || tin_.apex(exit) != at_) return connect(v);
+        step_along(exit.next(), v);
+        return true;
     }
     // Only rounding can forbid the split: a triangle beside the edge is a needle, whose middle
     // vertex goes onto its long side; or whatever else is within reach.
@@ -256,9 +260,19 @@ void March::count_crossing(Side edge) {
 }
 
 void March::measure(Point2 p) {
+    const AreaEstimate area = estimate_doubled_area(start_, end_, p);
+    if (std::fabs(area.value) + area.error <= tally_.max_plan_deviation * length_ &&
+        is_beside_segment(p))
+        return;
     if (p == start_ || p == end_) return;
     tally_.max_plan_deviation =
         std::max(tally_.max_plan_deviation, distance_to_segment(p, start_, end_));
+}
+
+/// Whether p is between the ends of the input segment, along it.
+bool March::is_beside_segment(Point2 p) const {
+    const double at = along(p);
+    return at >= 0.0 && at <= length_ * length_;
 }
 
 }  // namespace tinsmith::core

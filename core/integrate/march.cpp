@@ -114,7 +114,7 @@ bool March::march_to_end() {
             return is_as_promised();
         }
         if (!within_budget()) return false;
-        const Departure departure = leave(tin_, at_, end_, side_from(tin_, at_));
+        const Departure departure = leave(tin_, at_, end_, first_look());
         switch (departure.kind) {
             case Departure::Kind::AlongEdge:
                 if (!follow(departure)) return false;
@@ -135,6 +135,12 @@ bool March::march_to_end() {
                 break;
         }
     }
+}
+
+/// The side from the vertex where the march stands at which to look for the way on.
+Side March::first_look() const {
+    const bool is_known = way_on_.valid() && tin_.origin(way_on_) == at_;
+    return is_known ? way_on_ : side_from(tin_, at_);
 }
 
 /// The end of the segment is where the march stands, or within snap of it.

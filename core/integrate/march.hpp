@@ -93,6 +93,7 @@ class March {
     bool march_to_end();
     bool march_home();
     bool has_arrived() const;
+    Side first_look() const;
     bool is_as_promised();
     bool follow(const Departure& departure);
     bool cross(Side exit);
@@ -109,6 +110,7 @@ class March {
     VertexId place(Location location, Point2 p);
     VertexId place_on(Side edge, Point2 p);
     double bend_of(Side edge, Point2 p) const;
+    bool bends_unusually(Side edge, Point2 p) const;
     bool can_bend(Side edge, Point2 p) const;
     void stand_on(VertexId v);
     void step_along(Side edge, VertexId next);
@@ -133,6 +135,7 @@ class March {
     bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
     void measure(Point2 p);
+    bool is_beside_segment(Point2 p) const;
 
     // connect.cpp
     bool connect(VertexId t);
@@ -181,6 +184,7 @@ class March {
     std::size_t from_ = 0;  ///< the input segment's points in the path
     std::size_t to_ = 0;
     VertexId first_;  ///< where the path began; invalid: outside the mesh
+    Side way_on_;     ///< a side at `at_` near the way on, to look at first; any side is right
     VertexId at_;     ///< where the march stands; invalid: outside the mesh
     Point2 start_;    ///< the input segment
     Point2 end_;

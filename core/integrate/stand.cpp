@@ -96,8 +96,7 @@ VertexId March::place(Location location, Point2 p) {
             break;
         }
         case Location::Kind::OnEdge:
-            v = place_on(location.side, p);
-            break;
+            return place_on(location.side, p);
         case Location::Kind::OnVertex:
         case Location::Kind::Outside:
             return v;
@@ -114,12 +113,25 @@ VertexId March::place_on(Side edge, Point2 p) {
         const bool is_across = orientation(tin_.plan(tin_.origin(edge)),
                                            tin_.plan(tin_.destination(edge)), p) == Clockwise;
         const TriangleId t = is_across ? across.triangle() : edge.triangle();
-        return surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)});
+        changed_.push_back(surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)}));
+        return changed_.back();
     }
-    const double bent = bend_of(edge, p);
+    const double bent = bends_unusually(edge, p) ? bend_of(edge, p) : 0.0;
     const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_on(tin_, edge, p)});
     if (bent > kUsualBend * reach_of_rounding_) bends_.set(v, bent);
+    changed_.push_back(v);
     return v;
+}
+
+/// False where the edge going through p is off what it was before the request by no more than the
+/// rounding of one position, which is so almost always. Filtered: may be true there as well.
+bool March::bends_unusually(Side edge, Point2 p) const {
+    const VertexId from = tin_.origin(edge), to = tin_.destination(edge);
+    if (bends_.of(from) > 0.0 || bends_.of(to) > 0.0) return true;
+    const Point2 a = tin_.plan(from), b = tin_.plan(to);
+    const AreaEstimate area = estimate_doubled_area(a, b, p);
+    const double length = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));
+    return std::fabs(area.value) + area.error > kUsualBend * reach_of_rounding_ * length;
 }
 
 /// How far from the edge as it was before the request it is bent when it goes through p: what its
@@ -151,7 +163,7 @@ void March::stand_on(VertexId v) {
     at_ = v;
     tally_.chains.back().vertices.push_back(v);
     measure(tin_.plan(v));
-    log_elevation(share_along(tin_.plan(v)));
+    if (!path_->elevations.empty()) log_elevation(share_along(tin_.plan(v)));
 }
 
 /// Goes along an edge from where the march stands to its other end, and constrains it.
