@@ -191,7 +191,7 @@ bool March::absorb(Side edge) {
     absorbed_ = absorbed_at_ == at_ ? absorbed_ + 1 : 1;
     absorbed_at_ = at_;
     const VertexId apex = tin_.apex(edge);
-    if (tin_.separates_facets(edge)) bends_.set(apex, bend_of(edge, tin_.plan(apex)));
+    if (tin_.separates_facets(edge)) drift_.bend(apex, bend_of(edge, tin_.plan(apex)));
     changed_.push_back(apex);
     surgery_.absorb_apex(edge);
     ++tally_.edges_swapped;

@@ -21,7 +21,7 @@ class Request {
           shapes_(shapes),
           options_(options),
           limits_{options.max_crossings, options.max_new_triangles, &options.cancelled},
-          bends_(tin.vertex_count()),
+          drift_(tin.vertex_count()),
           watch_(options.clock_ms) {}
     Request(const Request&) = delete;
     Request& operator=(const Request&) = delete;
@@ -47,7 +47,7 @@ class Request {
     std::optional<Error> integrate_shape(std::size_t s) {
         done_.reserve(done_.size() + 1);
         Surgery surgery(tin_);
-        ShapeIntegration integration(surgery, options_, limits_, bends_, watch_, report_.time_ms);
+        ShapeIntegration integration(surgery, options_, limits_, drift_, watch_, report_.time_ms);
         if (!integration.run(shapes_[s])) {
             Error error = integration.error();
             error.place.shape = s;
@@ -86,7 +86,7 @@ class Request {
     std::span<const Shape> shapes_;
     const IntegrateOptions& options_;
     MarchLimits limits_;
-    Bends bends_;
+    Drift drift_;
     Report report_;
     Stopwatch watch_;
     Undo done_;

@@ -21,8 +21,8 @@ bool is_within(Point2 p, Point2 q, double distance) {
 }  // namespace
 
 March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-             Bends& bends)
-    : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits), bends_(bends) {
+             Drift& drift)
+    : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits), drift_(drift) {
     const Bounds& box = tin_.bounds();
     const double largest = std::max(
         {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});

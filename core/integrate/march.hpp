@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/integrate/bends.hpp"
+#include "core/integrate/drift.hpp"
 #include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
@@ -61,9 +61,9 @@ struct MarchLimits {
 /// that for the cases in which rounding decides.
 class March {
   public:
-    /// `bends` is the request's, and knows what earlier shapes of it did.
+    /// `drift` is the request's, and knows what earlier shapes of it did.
     March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-          Bends& bends);
+          Drift& drift);
 
     /// Begins a path at its first point; `index` is the path's in its shape. The path must live
     /// until `finish`. Costs a location. False: stopped, see `error`.
@@ -112,6 +112,7 @@ class March {
     double bend_of(Side edge, Point2 p) const;
     bool bends_unusually(Side edge, Point2 p) const;
     bool can_bend(Side edge, Point2 p) const;
+    std::uint32_t deepest_corner(TriangleId t) const;
     void stand_on(VertexId v);
     void step_along(Side edge, VertexId next);
     void log_elevation(double share);
@@ -170,7 +171,7 @@ class March {
     const Tin& tin_;
     const IntegrateOptions& options_;
     const MarchLimits& limits_;
-    Bends& bends_;
+    Drift& drift_;
     double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
     double snap_;               ///< of this segment
     double near_;               ///< what is nearer is one: half of that, or the snap

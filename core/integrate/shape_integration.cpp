@@ -12,6 +12,9 @@ namespace tinsmith::core {
 
 namespace {
 
+/// Rounding of one interpolated elevation, in ulps of the largest.
+constexpr double kInterpolationUlps = 4.0;
+
 /// Whether the operation met a facet of several triangles.
 bool met_divided_facets(const Tin& tin, const UndoRecord& record) {
     return std::any_of(record.triangles.begin(), record.triangles.end(), [&](const auto& entry) {
@@ -114,13 +117,15 @@ ShapeReport ShapeIntegration::report() {
 
 /// A bound on how far rounding moved the surface. A vertex put on an edge between facets is off it
 /// by a `bend` in plan, hence off either facet's plane by that times the slopes of both, and its
-/// elevation is rounded. Facets that had several triangles before were off their planes already:
+/// elevation is rounded, once more each time that it is interpolated from vertices of the same
+/// request. Facets that had several triangles before were off their planes already:
 /// the surface there may move by what it was off and what it is.
 double ShapeIntegration::certify(double steepest_slope) {
     const Tin& tin = surgery_.tin();
     const Bounds& box = tin.bounds();
     const double height = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
-    const double added = 2.0 * steepest_slope * march_.largest_bend() + 8.0 * ulp(height);
+    const double added = 2.0 * steepest_slope * march_.largest_bend() +
+                         kInterpolationUlps * (1.0 + drift_.deepest()) * ulp(height);
     const double before = met_divided_facets(tin, surgery_.record()) ? tin.facet_error() : 0.0;
     surgery_.raise_facet_error(before + added);
     return before + (before + added);

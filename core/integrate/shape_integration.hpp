@@ -15,12 +15,13 @@ namespace tinsmith::core {
 class ShapeIntegration {
   public:
     ShapeIntegration(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-                     Bends& bends, Stopwatch& watch, StageTimes& times)
+                     Drift& drift, Stopwatch& watch, StageTimes& times)
         : surgery_(surgery),
           options_(options),
           watch_(watch),
           times_(times),
-          march_(surgery, options, limits, bends),
+          drift_(drift),
+          march_(surgery, options, limits, drift),
           improver_(surgery) {}
 
     /// False: stopped, see `error`.
@@ -43,6 +44,7 @@ class ShapeIntegration {
     const IntegrateOptions& options_;
     Stopwatch& watch_;
     StageTimes& times_;
+    Drift& drift_;
     March march_;
     Improver improver_;
     std::vector<VertexId> changed_;

@@ -92,7 +92,9 @@ VertexId March::place(Location location, Point2 p) {
     switch (location.kind) {
         case Location::Kind::InTriangle: {
             const TriangleId t = location.side.triangle();
+            const std::uint32_t below = deepest_corner(t);
             v = surgery_.split_triangle(t, {p.x, p.y, elevation_in(tin_, t, p)});
+            drift_.nest(v, below);
             break;
         }
         case Location::Kind::OnEdge:
@@ -113,12 +115,18 @@ VertexId March::place_on(Side edge, Point2 p) {
         const bool is_across = orientation(tin_.plan(tin_.origin(edge)),
                                            tin_.plan(tin_.destination(edge)), p) == Clockwise;
         const TriangleId t = is_across ? across.triangle() : edge.triangle();
-        changed_.push_back(surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)}));
-        return changed_.back();
+        const std::uint32_t below = deepest_corner(t);
+        const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)});
+        drift_.nest(v, below);
+        changed_.push_back(v);
+        return v;
     }
     const double bent = bends_unusually(edge, p) ? bend_of(edge, p) : 0.0;
+    const std::uint32_t below =
+        std::max(drift_.nesting_of(tin_.origin(edge)), drift_.nesting_of(tin_.destination(edge)));
     const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_on(tin_, edge, p)});
-    if (bent > kUsualBend * reach_of_rounding_) bends_.set(v, bent);
+    drift_.nest(v, below);
+    if (bent > kUsualBend * reach_of_rounding_) drift_.bend(v, bent);
     changed_.push_back(v);
     return v;
 }
@@ -127,7 +135,7 @@ VertexId March::place_on(Side edge, Point2 p) {
 /// rounding of one position, which is so almost always. Filtered: may be true there as well.
 bool March::bends_unusually(Side edge, Point2 p) const {
     const VertexId from = tin_.origin(edge), to = tin_.destination(edge);
-    if (bends_.of(from) > 0.0 || bends_.of(to) > 0.0) return true;
+    if (drift_.bend_of(from) > 0.0 || drift_.bend_of(to) > 0.0) return true;
     const Point2 a = tin_.plan(from), b = tin_.plan(to);
     const AreaEstimate area = estimate_doubled_area(a, b, p);
     const double length = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));
@@ -139,7 +147,8 @@ bool March::bends_unusually(Side edge, Point2 p) const {
 double March::bend_of(Side edge, Point2 p) const {
     const Point2 a = tin_.plan(tin_.origin(edge));
     const Point2 b = tin_.plan(tin_.destination(edge));
-    const double at_a = bends_.of(tin_.origin(edge)), at_b = bends_.of(tin_.destination(edge));
+    const double at_a = drift_.bend_of(tin_.origin(edge)),
+                 at_b = drift_.bend_of(tin_.destination(edge));
     const double squared = squared_distance(a, b);
     const double share =
         std::clamp(((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / squared, 0.0, 1.0);
@@ -147,8 +156,14 @@ double March::bend_of(Side edge, Point2 p) const {
            std::fabs(compensated_doubled_area(a, b, p)) / std::sqrt(squared);
 }
 
+/// How often elevations were interpolated one from the other at most, at the triangle's corners.
+std::uint32_t March::deepest_corner(TriangleId t) const {
+    const auto& [a, b, c] = tin_.triangle(t).vertices;
+    return std::max({drift_.nesting_of(a), drift_.nesting_of(b), drift_.nesting_of(c)});
+}
+
 double March::largest_bend() const {
-    return std::max(bends_.largest(), kUsualBend * reach_of_rounding_);
+    return std::max(drift_.largest_bend(), kUsualBend * reach_of_rounding_);
 }
 
 /// Whether the edge may go through p: inside a facet always; between facets while what rounding

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/types/ids.hpp"
+
+namespace tinsmith::core {
+
+/// What rounding did to the vertices of a request, so that it can be certified. One lives for a
+/// whole request.
+class Drift {
+  public:
+    /// `first`: what the request's first new vertex will be.
+    explicit Drift(std::size_t first) : first_(first) {}
+
+    /// How far the vertex is, in plan, off the edge between facets that it was put on, where that
+    /// is more than the rounding of one position; session unit. Zero for vertices that were there
+    /// before the request.
+    double bend_of(VertexId v) const { return knows(v) ? of_[v.index() - first_].bend : 0.0; }
+    /// Remembers the larger of this and what is known. Vertices from before the request do not
+    /// move: theirs is not kept.
+    void bend(VertexId v, double bend) {
+        if (v.index() < first_) return;
+        double& known = at(v).bend;
+        known = std::max(known, bend);
+        largest_bend_ = std::max(largest_bend_, bend);
+    }
+    double largest_bend() const { return largest_bend_; }
+
+    /// How often elevations were interpolated one from the other to give the vertex its own.
+    std::uint32_t nesting_of(VertexId v) const {
+        return knows(v) ? of_[v.index() - first_].nesting : 0;
+    }
+    /// A new vertex took its elevation from others, of which the deepest is given.
+    void nest(VertexId v, std::uint32_t below) {
+        at(v).nesting = below + 1;
+        deepest_ = std::max(deepest_, below + 1);
+    }
+    std::uint32_t deepest() const { return deepest_; }
+
+  private:
+    struct OfVertex {
+        double bend = 0.0;
+        std::uint32_t nesting = 0;
+    };
+
+    bool knows(VertexId v) const { return v.index() >= first_ && v.index() - first_ < of_.size(); }
+    OfVertex& at(VertexId v) {
+        const std::size_t i = v.index() - first_;
+        if (i >= of_.size()) of_.resize(i + 1);
+        return of_[i];
+    }
+
+    std::size_t first_;
+    std::vector<OfVertex> of_;
+    double largest_bend_ = 0.0;
+    std::uint32_t deepest_ = 0;
+};
+
+}  // namespace tinsmith::core
