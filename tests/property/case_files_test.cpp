@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/laws.hpp"
 #include "tests/support/trial.hpp"
 
 namespace tinsmith {
@@ -31,6 +32,13 @@ TEST_P(CaseFile, KeepsAllGuarantees) {
     EXPECT_FALSE(replayed.requests.empty());
     const test::Verdict verdict = test::replay(replayed);
     for (const std::string& fault : verdict.broken)
+        ADD_FAILURE() << GetParam() << ": " << fault;
+}
+
+TEST_P(CaseFile, KeepsTheLawsBetweenTwoIntegrations) {
+    const test::Case replayed = test::read_case_file(GetParam());
+    const test::Trial trial(replayed.mesh);
+    for (const std::string& fault : test::check_laws(trial.tin(), replayed.requests.front()))
         ADD_FAILURE() << GetParam() << ": " << fault;
 }
 

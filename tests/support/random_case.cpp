@@ -42,18 +42,15 @@ bool one_in(Random& random, int count) {
 
 std::uint64_t unrepresentable_per_million(MeshKind kind) {
     switch (kind) {
-        case MeshKind::Grid:
-        case MeshKind::Steep:
-            return 0;
-        case MeshKind::Delaunay:
-        case MeshKind::Map:
-            return 1000;
-        case MeshKind::Strips:
-            return 1500;
         case MeshKind::Needles:
-            return 3000;
+            return 2200;
+        case MeshKind::Map:
+            return 400;
+        case MeshKind::FarAway:
+        case MeshKind::Steep:
+            return 250;
         default:
-            return 500;
+            return 150;
     }
 }
 
