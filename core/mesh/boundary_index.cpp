@@ -7,13 +7,18 @@
 namespace tinsmith::core {
 
 BoundaryIndex::BoundaryIndex(Point2 min, Point2 max, std::size_t edges) : min_(min), max_(max) {
-    const double width = max.x - min.x;
-    const double height = max.y - min.y;
+    make_grid(edges);
+}
+
+/// An empty grid for so many edges.
+void BoundaryIndex::make_grid(std::size_t edges) {
+    const double width = max_.x - min_.x;
+    const double height = max_.y - min_.y;
     const double side = std::clamp(std::sqrt(static_cast<double>(edges)), 1.0, 2048.0);
     columns_ = rows_ = static_cast<std::size_t>(side);
     cells_per_x_ = width > 0.0 ? static_cast<double>(columns_) / width : 0.0;
     cells_per_y_ = height > 0.0 ? static_cast<double>(rows_) / height : 0.0;
-    cells_.resize(columns_ * rows_);
+    cells_.assign(columns_ * rows_, {});
 }
 
 // Monotone in the coordinate, so that a box covers all cells of the points in it, whatever
@@ -29,23 +34,82 @@ std::size_t BoundaryIndex::row(double y) const {
     return cell <= 0.0 ? 0 : std::min(rows_ - 1, static_cast<std::size_t>(std::min(cell, 4096.0)));
 }
 
-void BoundaryIndex::add(VertexId v, Point2 p, Point2 q, std::vector<std::size_t>* log) {
-    const auto [left, right] = std::minmax({column(p.x), column(q.x)});
-    const auto [low, high] = std::minmax({row(p.y), row(q.y)});
-    for (std::size_t r = low; r <= high; ++r) {
-        for (std::size_t c = left; c <= right; ++c) {
-            const std::size_t cell = r * columns_ + c;
-            if (std::find(cells_[cell].begin(), cells_[cell].end(), v) != cells_[cell].end())
-                continue;
-            cells_[cell].push_back(v);
-            if (log != nullptr) log->push_back(cell);
-        }
+BoundaryIndex::CellRange BoundaryIndex::cells_of(const Entry& entry) const {
+    const auto [left, right] = std::minmax({column(entry.p.x), column(entry.q.x)});
+    const auto [low, high] = std::minmax({row(entry.p.y), row(entry.q.y)});
+    return {left, right, low, high};
+}
+
+void BoundaryIndex::file(std::uint32_t entry) {
+    const CellRange range = cells_of(entries_[entry]);
+    for (std::size_t r = range.low; r <= range.high; ++r)
+        for (std::size_t c = range.left; c <= range.right; ++c)
+            cells_[r * columns_ + c].push_back(entry);
+}
+
+void BoundaryIndex::append(const Entry& entry) {
+    entries_.push_back(entry);
+    constexpr std::size_t kCrowded = 8;
+    if (entries_.size() <= kCrowded * cells_.size() || columns_ >= 2048) {
+        file(static_cast<std::uint32_t>(entries_.size() - 1));
+        return;
+    }
+    make_grid(2 * entries_.size());
+    for (std::uint32_t i = 0; i < entries_.size(); ++i)
+        file(i);
+}
+
+void BoundaryIndex::add(VertexId v, Point2 p, Point2 q) {
+    append({v, p, q});
+    changes_.push_back({});
+}
+
+/// The newest entry under v of an edge through p; all ones where there is none.
+std::uint32_t BoundaryIndex::find(VertexId v, Point2 p) const {
+    const auto& cell = cells_[row(p.y) * columns_ + column(p.x)];
+    const auto found = std::find_if(cell.rbegin(), cell.rend(),
+                                    [&](std::uint32_t i) { return entries_[i].vertex == v; });
+    return found == cell.rend() ? UINT32_MAX : *found;
+}
+
+void BoundaryIndex::add_split(VertexId v, Point2 a, VertexId w, Point2 p, Point2 b) {
+    const auto length = [](Point2 from, Point2 to) {
+        return std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
+    };
+    const std::uint32_t known = find(v, p);
+    if (known == UINT32_MAX) {  // rounding put p outside the cells of a-b
+        add(v, a, p);
+        add(w, p, b);
+        return;
+    }
+    if (length(p, b) <= length(a, p)) {
+        add(w, p, b);
+        return;
+    }
+    entries_[known].vertex = w;
+    append({v, a, p});
+    changes_.push_back({known, v});
+}
+
+void BoundaryIndex::take_back(std::size_t count) {
+    while (changes_.size() > count) {
+        const Change change = changes_.back();
+        changes_.pop_back();
+        const CellRange range = cells_of(entries_.back());
+        for (std::size_t r = range.low; r <= range.high; ++r)
+            for (std::size_t c = range.left; c <= range.right; ++c)
+                cells_[r * columns_ + c].pop_back();
+        entries_.pop_back();
+        if (change.renamed != UINT32_MAX) entries_[change.renamed].vertex = change.before;
     }
 }
 
-void BoundaryIndex::remove_newest(const std::vector<std::size_t>& cells) {
-    for (auto cell = cells.rbegin(); cell != cells.rend(); ++cell)
-        cells_[*cell].pop_back();
+std::size_t BoundaryIndex::memory_bytes() const {
+    std::size_t bytes = entries_.size() * sizeof(Entry) + changes_.size() * sizeof(Change) +
+                        cells_.size() * sizeof(cells_[0]);
+    for (const auto& cell : cells_)
+        bytes += cell.size() * sizeof(std::uint32_t);
+    return bytes;
 }
 
 std::vector<VertexId> BoundaryIndex::near(Point2 p, Point2 q) const {
@@ -70,7 +134,8 @@ std::vector<VertexId> BoundaryIndex::near(Point2 p, Point2 q) const {
         const std::size_t last = std::min(right + 1, columns_ - 1);
         for (std::size_t c = left > 0 ? left - 1 : 0; c <= last; ++c) {
             const auto& cell = cells_[r * columns_ + c];
-            found.insert(found.end(), cell.begin(), cell.end());
+            for (const std::uint32_t entry : cell)
+                found.push_back(entries_[entry].vertex);
         }
     }
     std::sort(found.begin(), found.end());

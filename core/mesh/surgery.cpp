@@ -30,6 +30,7 @@ void set_side_marks(std::uint32_t& marks, unsigned side, std::uint32_t moved) {
 Surgery::Surgery(Tin& tin) : tin_(tin) {
     record_.vertex_count = tin.vertices_.size();
     record_.triangle_count = tin.triangles_.size();
+    record_.boundary_changes = tin.boundary_.changes();
     record_.split_count = tin.constraint_splits_.size();
     record_.next_facet = tin.next_facet_;
     record_.facet_error = tin.facet_error_;
@@ -144,8 +145,7 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     if (!across.valid()) {
         join({t, i}, {});
         join({N, 0}, {});
-        log_boundary(a, p);
-        log_boundary(p, b);
+        tin_.boundary_.add_split(a, tin_.plan(a), p, point.plan(), tin_.plan(b));
         return p;
     }
 
@@ -278,10 +278,6 @@ FacetId Surgery::give_fresh_facet(TriangleId t) {
     return edit(t).facet = {tin_.next_facet_++};
 }
 
-void Surgery::log_boundary(VertexId v, VertexId next) {
-    tin_.boundary_.add(v, tin_.plan(v), tin_.plan(next), &record_.boundary_cells);
-}
-
 UndoRecord Surgery::commit() {
     if (bounds_are_stale_) {
         const auto [low, high] = std::minmax_element(
@@ -304,7 +300,7 @@ void Surgery::roll_back() {
 }
 
 void Surgery::undo(Tin& tin, const UndoRecord& record) {
-    tin.boundary_.remove_newest(record.boundary_cells);
+    tin.boundary_.take_back(record.boundary_changes);
     tin.vertices_.resize(record.vertex_count);
     tin.triangles_.resize(record.triangle_count);
     for (const auto& [id, old] : record.triangles)

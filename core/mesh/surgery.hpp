@@ -73,7 +73,6 @@ class Surgery {
     void join(Side a, Side b);
     VertexId append(Point3 p, TriangleId t);
     TriangleId append(const Tin::Triangle& t);
-    void log_boundary(VertexId v, VertexId next);
 
     Tin& tin_;
     UndoRecord record_;

@@ -65,7 +65,8 @@ MeshData Tin::to_data() const {
 
 std::size_t Tin::memory_bytes() const {
     return vertices_.size() * sizeof(Vertex) + triangles_.size() * sizeof(Triangle) +
-           hints_.size() * sizeof(TriangleId) + constraint_splits_.size() * sizeof(ConstraintSplit);
+           hints_.size() * sizeof(TriangleId) +
+           constraint_splits_.size() * sizeof(ConstraintSplit) + boundary_.memory_bytes();
 }
 
 }  // namespace tinsmith::core

@@ -15,13 +15,13 @@ namespace tinsmith::core {
 struct UndoRecord {
     std::size_t vertex_count = 0;
     std::size_t triangle_count = 0;
-    std::size_t split_count = 0;  ///< of constraints
+    std::size_t boundary_changes = 0;  ///< of the boundary index
+    std::size_t split_count = 0;       ///< of constraints
     std::uint32_t next_facet = 0;
     double facet_error = 0.0;
     Bounds bounds;
     std::vector<std::pair<TriangleId, Tin::Triangle>> triangles;  ///< each old slot once
     std::vector<std::pair<VertexId, Tin::Vertex>> vertices;       ///< in order of change
-    std::vector<std::size_t> boundary_cells;                      ///< cells that took a new entry
 };
 
 /// The records of one operation's parts, in order.

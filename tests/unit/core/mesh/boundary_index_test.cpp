@@ -150,16 +150,50 @@ TEST(BoundaryIndex, AnEmptyOneNamesNothing) {
     EXPECT_TRUE(BoundaryIndex({0, 0}, {1, 1}, 10).near({0, 0}, {1, 1}).empty());
 }
 
-TEST(BoundaryIndex, ForgetsTheNewestEntries) {
+TEST(BoundaryIndex, TakesTheNewestChangesBack) {
     BoundaryIndex index({0, 0}, {4, 4}, 16);
     index.add({1}, {0, 0}, {4, 4});
     const auto before = index.near({0, 0}, {4, 4});
-    std::vector<std::size_t> log;
-    index.add({2}, {0, 4}, {4, 0}, &log);
-    index.add({1}, {0, 4}, {4, 4}, &log);
-    EXPECT_EQ(index.near({0, 4}, {0, 4}), (std::vector<VertexId>{{1}, {2}}));
-    index.remove_newest(log);
+    const std::size_t changes = index.changes();
+    index.add({2}, {0, 4}, {4, 0});
+    index.add_split({1}, {0, 0}, {3}, {1, 1}, {4, 4});
+    index.add_split({3}, {1, 1}, {4}, {3, 3}, {4, 4});
+    EXPECT_EQ(index.near({0, 0}, {0, 0}), (std::vector<VertexId>{{1}, {2}, {3}}));
+    index.take_back(changes);
     EXPECT_EQ(index.near({0, 0}, {4, 4}), before);
+}
+
+TEST(BoundaryIndex, NamesFewEdgesHoweverOftenOneIsSplit) {
+    // From either end, and in halves: every edge is found, and near a place never many.
+    for (const int way : {0, 1, 2}) {
+        constexpr int kEdges = 4096;
+        BoundaryIndex index({0, 0}, {kEdges, 1}, 3);
+        index.add({0}, {0, 0}, {kEdges, 0});
+        std::vector<std::pair<double, VertexId>> starts{{0.0, {0}}, {kEdges, {UINT32_MAX}}};
+        for (std::uint32_t i = 1; i < kEdges; ++i) {
+            std::uint32_t at = way == 0 ? i : kEdges - i;
+            if (way == 2) {  // bits reversed: always near the middle of what is left
+                at = 0;
+                for (unsigned bit = 0; bit < 12; ++bit)
+                    at |= ((i >> bit) & 1U) << (11 - bit);
+            }
+            const double x = at;
+            const auto next =
+                std::lower_bound(starts.begin(), starts.end(), std::pair{x, VertexId{0}});
+            const auto [from, v] = *(next - 1);
+            const double to = next->first;
+            index.add_split(v, {from, 0}, {i}, {x, 0}, {to, 0});
+            starts.insert(next, {x, {i}});
+        }
+        std::size_t most = 0;
+        for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+            const double middle = starts[i].first + 0.5;
+            const auto found = index.near({middle, -1}, {middle, 1});
+            EXPECT_TRUE(std::binary_search(found.begin(), found.end(), starts[i].second)) << i;
+            most = std::max(most, found.size());
+        }
+        EXPECT_LT(most, 300u) << way;
+    }
 }
 
 }  // namespace
