@@ -31,11 +31,7 @@ bool March::connect(VertexId t) {
             continue;
         }
         const std::optional<VertexId> next = collect_corridor(target);
-        if (const Side edge = next ? Side{} : edge_on_way(along(goal)); edge.valid()) {
-            // Once from each vertex: the straight way may lead back to it.
-            if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end())
-                return fail(ErrorCode::NotRepresentable, kNoWay);
-            detours_.push_back(at_);
+        if (const Side edge = next ? Side{} : detour(along(goal)); edge.valid()) {
             step_along(edge, far_end(edge));
             continue;
         }
@@ -110,6 +106,14 @@ Side March::edge_on_way(double limit) const {
     };
     for_each_side_at(tin_, at_, [&](Side edge) { offer(edge, far_end(edge)); });
     return best;
+}
+
+/// Takes `edge_on_way`, once from each vertex: the straight way may lead back to it.
+Side March::detour(double limit) {
+    if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end()) return {};
+    const Side edge = edge_on_way(limit);
+    if (edge.valid()) detours_.push_back(at_);
+    return edge;
 }
 
 /// The other end of an edge at the vertex where the march stands.

@@ -38,7 +38,7 @@ Side CrossFacetImprover::swap_if_better(Surgery& surgery, Side s) {
     // The cheapest question that most edges fail comes first.
     if (!improves_aspect(quad) || !can_swap(quad)) return {};
     if (!tin.separates_facets(s)) return surgery.swap_edge(s);
-    if (!bends_no_more(quad)) return {};
+    if (!bends_no_more(quad) || leaves_set_vertices(tin, s)) return {};
     double deviation = std::max(carried(tin, s), carried(tin, tin.twin(s)));
     // Rounded up, so that no number of swaps adds up to less than the truth.
     if (const double gap = vertical_gap(quad); gap > 0.0)
@@ -48,6 +48,17 @@ Side CrossFacetImprover::swap_if_better(Surgery& surgery, Side s) {
     carry(surgery.give_fresh_facet(diagonal.triangle()), deviation);
     carry(surgery.give_fresh_facet(tin.twin(diagonal).triangle()), deviation);
     return diagonal;
+}
+
+/// Whether a triangle here touches a set vertex and one after the swap does not.
+bool CrossFacetImprover::leaves_set_vertices(const Tin& tin, Side s) const {
+    if (set_vertices_.empty()) return false;
+    const auto is_set = [this](VertexId v) {
+        return std::binary_search(set_vertices_.begin(), set_vertices_.end(), v);
+    };
+    const bool a = is_set(tin.origin(s)), b = is_set(tin.destination(s));
+    // Both new triangles have the new diagonal; one has a, the other b.
+    return (a != b) && !is_set(tin.apex(s)) && !is_set(tin.apex(tin.twin(s)));
 }
 
 double CrossFacetImprover::carried(const Tin& tin, Side s) const {

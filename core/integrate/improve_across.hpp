@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/mesh/surgery.hpp"
@@ -15,7 +16,9 @@ namespace tinsmith::core {
 ///   2. the worse of their two aspects, longest edge by shortest height in 3D, gets strictly
 ///   better;
 ///   3. the surface bends along the new edge no more than along the old (inside a facet: flat);
-///   4. what the surface has moved there, all swaps together, stays within the limit, if any.
+///   4. what the surface has moved there, all swaps together, stays within the limit, if any;
+///   5. no ground that touched a vertex whose elevation the request set is left to a triangle that
+///      touches none: what such a vertex moves is its triangles alone.
 /// Boundary, constrained and locked edges never swap.
 ///
 /// Such swaps move the surface; how far is certified. Each triangle that comes from a swap across
@@ -38,6 +41,9 @@ class CrossFacetImprover {
     explicit CrossFacetImprover(double limit = std::numeric_limits<double>::infinity())
         : limit_(limit) {}
 
+    /// Vertices whose elevation the request set, in order.
+    void hold_to(std::vector<VertexId> set_vertices) { set_vertices_ = std::move(set_vertices); }
+
     /// Improves around the vertices and as far as swaps reach from there. Ends: by the second
     /// condition the sorted list of all aspects only gets better, and there are finitely many
     /// triangulations. Cost: linear in the swaps.
@@ -50,6 +56,7 @@ class CrossFacetImprover {
 
   private:
     Side swap_if_better(Surgery& surgery, Side s);
+    bool leaves_set_vertices(const Tin& tin, Side s) const;
     double carried(const Tin& tin, Side s) const;
     void carry(FacetId fresh, double deviation);
 
@@ -58,6 +65,7 @@ class CrossFacetImprover {
     std::uint64_t edges_swapped_ = 0;
     std::uint32_t first_facet_ = 0;  ///< the first fresh one; `carried_` follows it
     std::vector<double> carried_;
+    std::vector<VertexId> set_vertices_;
 };
 
 }  // namespace tinsmith::core

@@ -60,6 +60,8 @@ class Request {
         limits_.max_new_triangles -= tin_.triangle_count() - surgery.record().triangle_count;
         report_.shapes.push_back(integration.report());
         changed_.push_back(std::move(integration.changed()));
+        const std::vector<VertexId>& set = integration.set_vertices();
+        set_vertices_.insert(set_vertices_.end(), set.begin(), set.end());
         done_.push_back(surgery.commit());
         watch_.lap(report_.time_ms.integrate);
         return std::nullopt;
@@ -70,6 +72,8 @@ class Request {
         CrossFacetImprover improver = options_.improve == Improve::Bounded
                                           ? CrossFacetImprover(options_.max_deviation)
                                           : CrossFacetImprover();
+        std::sort(set_vertices_.begin(), set_vertices_.end());
+        improver.hold_to(std::move(set_vertices_));
         done_.reserve(done_.size() + shapes_.size());
         for (std::size_t s = 0; s < shapes_.size(); ++s) {
             Surgery surgery(tin_);
@@ -91,6 +95,7 @@ class Request {
     Stopwatch watch_;
     Undo done_;
     std::vector<std::vector<VertexId>> changed_;  ///< by each shape
+    std::vector<VertexId> set_vertices_;          ///< by all of them
     bool met_mesh_ = false;
 };
 

@@ -123,7 +123,7 @@ bool March::march_to_end() {
                 if (!cross(departure.side)) return false;
                 break;
             case Departure::Kind::Outside:
-                if (const Side edge = edge_on_way(along(end_)); edge.valid()) {
+                if (const Side edge = detour(along(end_)); edge.valid()) {
                     step_along(edge, far_end(edge));
                 } else if (is_within(tin_.plan(at_), end_, near_)) {
                     // The end is outside, but one with this vertex to within rounding.

@@ -144,6 +144,7 @@ class March {
     bool has_way(VertexId t);
     std::optional<VertexId> collect_corridor(VertexId t);
     Side edge_on_way(double limit) const;
+    Side detour(double limit);
     VertexId far_end(Side edge) const;
     bool clear_corridor(VertexId t);
 

@@ -85,6 +85,7 @@ void ShapeIntegration::set_elevations() {
         const double change = std::fabs(own[i].z - tin.vertex(own[i].vertex).z);
         if (change == 0.0) continue;
         max_elevation_change_ = std::max(max_elevation_change_, change);
+        set_vertices_.push_back(own[i].vertex);
         surgery_.set_elevation(own[i].vertex, own[i].z);
         for_each_side_at(tin, own[i].vertex, [&](Side side) {
             for (const Side s : {side, tin.twin(side)})

@@ -31,6 +31,8 @@ class ShapeIntegration {
     const MarchTally& tally() const { return march_.tally(); }
     /// Vertices whose surroundings the march changed; kept for swaps across facets only.
     std::vector<VertexId>& changed() { return changed_; }
+    /// Vertices whose elevation the shape set, in order.
+    const std::vector<VertexId>& set_vertices() const { return set_vertices_; }
     /// What was done. Certifies it: to be asked once, at the end.
     ShapeReport report();
 
@@ -48,6 +50,7 @@ class ShapeIntegration {
     March march_;
     Improver improver_;
     std::vector<VertexId> changed_;
+    std::vector<VertexId> set_vertices_;
     double max_elevation_change_ = 0.0;
 };
 
