@@ -44,6 +44,8 @@ std::uint64_t unrepresentable_per_million(MeshKind kind) {
     switch (kind) {
         case MeshKind::Needles:
             return 2200;
+        case MeshKind::Strips:
+            return 600;
         case MeshKind::Map:
             return 400;
         case MeshKind::FarAway:
