@@ -20,10 +20,10 @@ class Lowest {
         values_.reserve(std::min(most, 2 * keep_));
     }
 
-    void add(double value) {
+    void add(const TriangleShape& shape) {
         ++count_;
-        if (value >= bound_) return;
-        values_.push_back(value);
+        if (!shape.has_angle_below(bound_)) return;  // spares most triangles a division
+        values_.push_back(shape.smallest_angle_measure());
         if (values_.size() == 2 * keep_) drop();
     }
 
@@ -50,7 +50,7 @@ class Lowest {
 
     std::size_t keep_;
     std::size_t count_ = 0;
-    double bound_ = HUGE_VAL;  ///< as many values as are kept are no larger
+    double bound_ = 1.0;  ///< as many values as are kept are no larger
     std::vector<double> values_;
 };
 
@@ -70,12 +70,12 @@ Measurement measure_operation(const Tin& tin, const UndoRecord& record) {
         const Tin::Triangle& now = tin.triangle(id);
         if (old.vertices == now.vertices) continue;  // a neighbour's link changed only
         const TriangleShape was = shape(old);
-        before.add(was.smallest_angle_measure());
-        steepest = std::max(steepest, was.squared_slope());
-        after.add(shape(now).smallest_angle_measure());
+        before.add(was);
+        if (was.is_steeper_than(steepest)) steepest = was.squared_slope();
+        after.add(shape(now));
     }
     for (std::size_t t = record.triangle_count; t < tin.triangle_count(); ++t)
-        after.add(shape(tin.triangle({static_cast<std::uint32_t>(t)})).smallest_angle_measure());
+        after.add(shape(tin.triangle({static_cast<std::uint32_t>(t)})));
 
     Measurement result;
     result.steepest_slope = std::sqrt(steepest);

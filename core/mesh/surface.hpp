@@ -42,6 +42,10 @@ class TriangleShape {
         const double product = longest_ * middle_;
         return product > 0.0 ? (level_squared_ + upright_squared_) / product : 0.0;
     }
+    /// Whether the measure of the smallest angle is below the bound, to within its last digits.
+    bool has_angle_below(double bound) const {
+        return level_squared_ + upright_squared_ <= bound * (longest_ * middle_);
+    }
     /// Square of the shortest height by the longest edge: from 0 to 3/4 (equilateral).
     double aspect_measure() const {
         const double product = longest_ * longest_;
@@ -49,6 +53,9 @@ class TriangleShape {
     }
     /// Square of the steepest slope, as rise over run.
     double squared_slope() const { return level_squared_ / upright_squared_; }
+    bool is_steeper_than(double squared_slope) const {
+        return level_squared_ > squared_slope * upright_squared_;
+    }
 
   private:
     double level_squared_;    ///< of the normal that is as long as twice the area
