@@ -259,14 +259,17 @@ void March::count_crossing(Side edge) {
         ++tally_.crossings;
 }
 
-void March::measure(Point2 p) {
+/// Measures how far the vertex is from the input segment. Filtered: most are nearer than any that
+/// needs to be known.
+void March::measure(VertexId v) {
+    const Point2 p = tin_.plan(v);
     const AreaEstimate area = estimate_doubled_area(start_, end_, p);
-    if (std::fabs(area.value) + area.error <= tally_.max_plan_deviation * length_ &&
-        is_beside_segment(p))
-        return;
+    const double known = std::min(tally_.max_plan_deviation, kUsualDrift * reach_of_rounding_);
+    if (std::fabs(area.value) + area.error <= known * length_ && is_beside_segment(p)) return;
     if (p == start_ || p == end_) return;
-    tally_.max_plan_deviation =
-        std::max(tally_.max_plan_deviation, distance_to_segment(p, start_, end_));
+    const double distance = distance_to_segment(p, start_, end_);
+    tally_.max_plan_deviation = std::max(tally_.max_plan_deviation, distance);
+    if (distance > kUsualDrift * reach_of_rounding_) drift_.stray(v, distance);
 }
 
 /// Whether p is between the ends of the input segment, along it.

@@ -31,6 +31,15 @@ class Drift {
     }
     double largest_bend() const { return largest_bend_; }
 
+    /// How far the vertex is from the input segments whose chains it is on, where that is more than
+    /// the rounding of one position; session unit. Like `bend_of`, for edges inside facets.
+    double stray_of(VertexId v) const { return knows(v) ? of_[v.index() - first_].stray : 0.0; }
+    void stray(VertexId v, double distance) {
+        if (v.index() < first_) return;
+        double& known = at(v).stray;
+        known = std::max(known, distance);
+    }
+
     /// How often elevations were interpolated one from the other to give the vertex its own.
     std::uint32_t nesting_of(VertexId v) const {
         return knows(v) ? of_[v.index() - first_].nesting : 0;
@@ -45,6 +54,7 @@ class Drift {
   private:
     struct OfVertex {
         double bend = 0.0;
+        double stray = 0.0;
         std::uint32_t nesting = 0;
     };
 

@@ -110,6 +110,8 @@ class March {
     VertexId place(Location location, Point2 p);
     VertexId place_on(Side edge, Point2 p);
     double bend_of(Side edge, Point2 p) const;
+    double stray_of(Side edge, Point2 p) const;
+    double off_edge(Side edge, Point2 p, double at_origin, double at_destination) const;
     bool bends_unusually(Side edge, Point2 p) const;
     bool can_bend(Side edge, Point2 p) const;
     std::uint32_t deepest_corner(TriangleId t) const;
@@ -135,7 +137,7 @@ class March {
     std::optional<VertexId> end_beside(Side edge);
     bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
-    void measure(Point2 p);
+    void measure(VertexId v);
     bool is_beside_segment(Point2 p) const;
 
     // connect.cpp
@@ -164,6 +166,8 @@ class March {
     Location locate_on_boundary(Point2 p) const;
     void visit_boundary(VertexId v);
     bool enter_other_fan();
+    VertexId vertex_of_other_fan();
+    Location locate_beside(TriangleId t, Point2 p) const;
     void leave_mesh();
     void close_outside();
     double along(Point2 p) const;
@@ -180,6 +184,8 @@ class March {
     std::optional<Error> error_;
     std::vector<VertexId> changed_;
     std::vector<OwnElevation> own_elevations_;
+    /// Of the reach: what rounding does to a position that was computed on an edge. Not added up.
+    static constexpr double kUsualDrift = 0.1875;
 
     const Path* path_ = nullptr;
     std::size_t path_index_ = 0;

@@ -150,40 +150,66 @@ void March::visit_boundary(VertexId v) {
     farthest_visit_ = std::max(farthest_visit_, along(tin_.plan(v)));
 }
 
-/// Where fans touch in one position, a vertex that is on one of them to within rounding may lie
-/// inside another, by exact predicates: stands on a vertex there, once from each vertex. False:
-/// there is no such fan.
+/// Where fans touch or all but touch, a vertex that is on one of them may be one with a vertex of
+/// another, or lie inside another by exact predicates, and the way may go on there: stands on a
+/// vertex of that fan, once from each vertex. False: there is no such fan.
 bool March::enter_other_fan() {
     if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end()) return false;
-    const Point2 p = tin_.plan(at_);
-    Location found;
-    const auto look_in = [&](Side side) {
-        if (!side.valid() || found.kind != Location::Kind::Outside) return;
-        const auto& corners = tin_.triangle(side.triangle()).vertices;
-        if (std::find(corners.begin(), corners.end(), at_) != corners.end()) return;
-        Location here{Location::Kind::InTriangle, side, {}};
-        for (unsigned i = 0; i < 3; ++i) {
-            const Orientation turn =
-                orientation(tin_.plan(corners[i]), tin_.plan(corners[Side::next_of(i)]), p);
-            if (turn == Clockwise || tin_.plan(corners[i]) == p) return;
-            if (turn == Collinear) here = {Location::Kind::OnEdge, {side.triangle(), i}, {}};
-        }
-        found = here;
-    };
-    for (const VertexId v : tin_.boundary().near(p, p)) {
-        if (v.index() >= tin_.vertex_count() || v == at_) continue;
-        for_each_side_at(tin_, v, [&](Side side) {
-            look_in(side);
-            look_in(tin_.twin(side));
-        });
-    }
-    if (found.kind == Location::Kind::Outside) return false;
+    const VertexId v = vertex_of_other_fan();
+    if (!v.valid()) return false;
     detours_.push_back(at_);
     visit_boundary(at_);
     tally_.chains.push_back({path_index_, {}});
-    stand_on(place(found, p));
-    detours_.push_back(at_);
+    stand_on(v);
+    if (v != at_) detours_.push_back(v);
     return true;
+}
+
+VertexId March::vertex_of_other_fan() {
+    const Point2 p = tin_.plan(at_);
+    const std::vector<VertexId> around =
+        tin_.boundary().near({p.x - near_, p.y - near_}, {p.x + near_, p.y + near_});
+    for (const VertexId v : around) {
+        if (v == at_ || v.index() >= tin_.vertex_count() || !is_near_segment(tin_.plan(v), near_))
+            continue;
+        const Point2 q = tin_.plan(v);
+        if ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) > near_ * near_ || q == end_ ||
+            std::find(detours_.begin(), detours_.end(), v) != detours_.end())
+            continue;
+        if (leave(tin_, v, end_, side_from(tin_, v)).kind != Departure::Kind::Outside) return v;
+    }
+    for (const VertexId v : around) {
+        if (v == at_ || v.index() >= tin_.vertex_count()) continue;
+        Location found;
+        for_each_side_at(tin_, v, [&](Side side) {
+            for (const Side beside : {side, tin_.twin(side)})
+                if (beside.valid() && found.kind == Location::Kind::Outside)
+                    found = locate_beside(beside.triangle(), p);
+        });
+        if (found.kind != Location::Kind::Outside) return place(found, p);
+    }
+    return {};
+}
+
+/// Where p lies in a triangle that does not touch the vertex where the march stands, nor has a
+/// corner at p; Outside where it does not.
+Location March::locate_beside(TriangleId t, Point2 p) const {
+    const auto& corners = tin_.triangle(t).vertices;
+    Location here{Location::Kind::InTriangle, {t, 0}, {}};
+    for (unsigned i = 0; i < 3; ++i) {
+        const Point2 corner = tin_.plan(corners[i]);
+        if (corners[i] == at_ || corner == p) return {};
+        switch (orientation(corner, tin_.plan(corners[Side::next_of(i)]), p)) {
+            case Clockwise:
+                return {};
+            case Collinear:
+                here = {Location::Kind::OnEdge, {t, i}, {}};
+                break;
+            case CounterClockwise:
+                break;
+        }
+    }
+    return here;
 }
 
 /// Leaves the mesh from the vertex where the march stands.

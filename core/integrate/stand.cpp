@@ -13,9 +13,6 @@ using enum Orientation;
 
 namespace {
 
-/// Of the reach: what rounding does to a position that was computed on an edge. Not added up.
-constexpr double kUsualBend = 0.1875;
-
 double squared_distance(Point2 p, Point2 q) {
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
 }
@@ -116,7 +113,9 @@ VertexId March::place_on(Side edge, Point2 p) {
                                            tin_.plan(tin_.destination(edge)), p) == Clockwise;
         const TriangleId t = is_across ? across.triangle() : edge.triangle();
         const std::uint32_t below = deepest_corner(t);
+        const double strays = tin_.is_constrained(edge) ? stray_of(edge, p) : 0.0;
         const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)});
+        if (strays > kUsualDrift * reach_of_rounding_) drift_.stray(v, strays);
         drift_.nest(v, below);
         changed_.push_back(v);
         return v;
@@ -126,7 +125,7 @@ VertexId March::place_on(Side edge, Point2 p) {
         std::max(drift_.nesting_of(tin_.origin(edge)), drift_.nesting_of(tin_.destination(edge)));
     const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_on(tin_, edge, p)});
     drift_.nest(v, below);
-    if (bent > kUsualBend * reach_of_rounding_) drift_.bend(v, bent);
+    if (bent > kUsualDrift * reach_of_rounding_) drift_.bend(v, bent);
     changed_.push_back(v);
     return v;
 }
@@ -139,20 +138,24 @@ bool March::bends_unusually(Side edge, Point2 p) const {
     const Point2 a = tin_.plan(from), b = tin_.plan(to);
     const AreaEstimate area = estimate_doubled_area(a, b, p);
     const double length = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));
-    return std::fabs(area.value) + area.error > kUsualBend * reach_of_rounding_ * length;
+    return std::fabs(area.value) + area.error > kUsualDrift * reach_of_rounding_ * length;
 }
 
 /// How far from the edge as it was before the request it is bent when it goes through p: what its
 /// ends are off it there, and p's own distance.
 double March::bend_of(Side edge, Point2 p) const {
+    return off_edge(edge, p, drift_.bend_of(tin_.origin(edge)),
+                    drift_.bend_of(tin_.destination(edge)));
+}
+
+/// p's distance from the edge, and what the edge is off already, between what its ends are.
+double March::off_edge(Side edge, Point2 p, double at_origin, double at_destination) const {
     const Point2 a = tin_.plan(tin_.origin(edge));
     const Point2 b = tin_.plan(tin_.destination(edge));
-    const double at_a = drift_.bend_of(tin_.origin(edge)),
-                 at_b = drift_.bend_of(tin_.destination(edge));
     const double squared = squared_distance(a, b);
     const double share =
         std::clamp(((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / squared, 0.0, 1.0);
-    return at_a + (at_b - at_a) * share +
+    return at_origin + (at_destination - at_origin) * share +
            std::fabs(compensated_doubled_area(a, b, p)) / std::sqrt(squared);
 }
 
@@ -163,12 +166,19 @@ std::uint32_t March::deepest_corner(TriangleId t) const {
 }
 
 double March::largest_bend() const {
-    return std::max(drift_.largest_bend(), kUsualBend * reach_of_rounding_);
+    return std::max(drift_.largest_bend(), kUsualDrift * reach_of_rounding_);
 }
 
-/// Whether the edge may go through p: inside a facet always; between facets while what rounding
-/// moved it adds up to no more than half the reach of rounding.
+/// How far from the input segments that it is part of a constrained edge is when it goes through p.
+double March::stray_of(Side edge, Point2 p) const {
+    return off_edge(edge, p, drift_.stray_of(tin_.origin(edge)),
+                    drift_.stray_of(tin_.destination(edge)));
+}
+
+/// Whether the edge may go through p: between facets while what rounding moved it adds up to no
+/// more than half the reach of rounding; as part of a chain while that stays within the reach.
 bool March::can_bend(Side edge, Point2 p) const {
+    if (tin_.is_constrained(edge) && stray_of(edge, p) > reach_of_rounding_) return false;
     if (tin_.twin(edge).valid() && !tin_.separates_facets(edge)) return true;
     return bend_of(edge, p) <= reach_of_rounding_ / 2.0;
 }
@@ -177,7 +187,7 @@ bool March::can_bend(Side edge, Point2 p) const {
 void March::stand_on(VertexId v) {
     at_ = v;
     tally_.chains.back().vertices.push_back(v);
-    measure(tin_.plan(v));
+    measure(v);
     if (!path_->elevations.empty()) log_elevation(share_along(tin_.plan(v)));
 }
 
