@@ -174,6 +174,7 @@ VertexId March::vertex_of_other_fan() {
             continue;
         const Point2 q = tin_.plan(v);
         if ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) > near_ * near_ || q == end_ ||
+            along(q) < along(p) || find_edge(tin_, at_, v).valid() ||
             std::find(detours_.begin(), detours_.end(), v) != detours_.end())
             continue;
         if (leave(tin_, v, end_, side_from(tin_, v)).kind != Departure::Kind::Outside) return v;

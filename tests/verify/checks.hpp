@@ -45,9 +45,10 @@ Faults check_elevations(const Edit& edit);
 inline constexpr std::size_t kUncounted = SIZE_MAX;
 
 /// G8: new vertices since `origin` are at distinct points of the shapes given since, or where
-/// their segments cross edges of `origin` or each other; at each such place no more than there are
-/// reasons. `forced` more are let pass at a place.
+/// their segments cross edges of `origin` or each other, or come within `snap` of them; at each
+/// such place no more than there are reasons. `forced` more are let pass at a place.
 Faults check_economy(const Snapshot& origin, const core::MeshData& after,
-                     std::span<const core::Shape> shapes, double reach, std::size_t forced);
+                     std::span<const core::Shape> shapes, double reach, double snap,
+                     std::size_t forced);
 
 }  // namespace tinsmith::verify

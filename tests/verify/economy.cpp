@@ -25,10 +25,11 @@ struct Line {
         if (b.x < a.x || (b.x == a.x && b.y < a.y)) std::swap(a, b);
     }
     std::array<double, 4> key() const { return {a.x, a.y, b.x, b.y}; }
-    bool is_box_near(const Line& other) const {
+    bool is_box_near(const Line& other, double slack) const {
         const auto [low, high] = std::minmax(a.y, b.y);
         const auto [other_low, other_high] = std::minmax(other.a.y, other.b.y);
-        return a.x <= other.b.x && other.a.x <= b.x && low <= other_high && other_low <= high;
+        return a.x <= other.b.x + slack && other.a.x <= b.x + slack && low <= other_high + slack &&
+               other_low <= high + slack;
     }
 };
 
@@ -51,8 +52,29 @@ Place crossing(const Line& s, const Line& e, double reach) {
     return {crossing_point(s.a, s.b, e.a, e.b), Place::Kind::Event, reach / sine};
 }
 
+/// Where a snap distance moved the way off its segment it crosses lines that the segment only comes
+/// near: the place where it comes nearest, within `snap`.
+void add_nearest(const Line& s, const Line& e, double reach, double snap,
+                 std::vector<Place>& places) {
+    const std::array<std::pair<Point2, const Line*>, 4> ends{
+        {{s.a, &e}, {s.b, &e}, {e.a, &s}, {e.b, &s}}};
+    double least = snap;
+    Place nearest = crossing(s, e, reach);
+    bool found = false;
+    for (const auto& [p, line] : ends) {
+        const double distance = line->a == line->b ? std::hypot(p.x - line->a.x, p.y - line->a.y)
+                                                   : distance_to(p, line->a, line->b);
+        if (distance > least) continue;
+        least = distance;
+        nearest.p = p;
+        found = true;
+    }
+    if (found) places.push_back(nearest);
+}
+
+/// `snap`: zero where the way is that of the segments to within rounding.
 void add_crossings(const std::vector<Line>& segments, const Snapshot& origin, double reach,
-                   std::vector<Place>& places) {
+                   double snap, std::vector<Place>& places) {
     std::vector<Line> edges;
     edges.reserve(origin.data.triangles.size() * 2);
     for (const auto& t : origin.data.triangles)
@@ -67,16 +89,24 @@ void add_crossings(const std::vector<Line>& segments, const Snapshot& origin, do
         longest = std::max(longest, e.b.x - e.a.x);
     for (std::size_t k = 0; k < segments.size(); ++k) {
         const Line& s = segments[k];
-        auto e = std::lower_bound(edges.begin(), edges.end(), s.a.x - longest,
+        auto e = std::lower_bound(edges.begin(), edges.end(), s.a.x - longest - snap,
                                   [](const Line& l, double x) { return l.a.x < x; });
-        for (; e != edges.end() && e->a.x <= s.b.x; ++e)
-            if (s.is_box_near(*e) && cross_properly(s.a, s.b, e->a, e->b))
+        for (; e != edges.end() && e->a.x <= s.b.x + snap; ++e) {
+            if (!s.is_box_near(*e, snap)) continue;
+            if (cross_properly(s.a, s.b, e->a, e->b))
                 places.push_back(crossing(s, *e, reach));
-        for (std::size_t m = k + 1; m < segments.size() && segments[m].a.x <= s.b.x; ++m) {
+            else if (snap > 0.0)
+                add_nearest(s, *e, reach, snap, places);
+        }
+        for (std::size_t m = k + 1; m < segments.size() && segments[m].a.x <= s.b.x + snap; ++m) {
             const Line& other = segments[m];
-            if (!s.is_box_near(other) || !cross_properly(s.a, s.b, other.a, other.b)) continue;
-            const Place place = crossing(s, other, reach);
-            if (origin.grid.holds(place.p, place.radius)) places.push_back(place);
+            if (!s.is_box_near(other, snap)) continue;
+            if (cross_properly(s.a, s.b, other.a, other.b)) {
+                const Place place = crossing(s, other, reach);
+                if (origin.grid.holds(place.p, place.radius)) places.push_back(place);
+            } else if (snap > 0.0) {
+                add_nearest(s, other, reach, snap, places);
+            }
         }
     }
 }
@@ -134,7 +164,8 @@ class Clusters {
 }  // namespace
 
 Faults check_economy(const Snapshot& origin, const core::MeshData& after,
-                     std::span<const core::Shape> shapes, double reach, std::size_t forced) {
+                     std::span<const core::Shape> shapes, double reach, double snap,
+                     std::size_t forced) {
     std::vector<Place> places;
     std::vector<Line> points, segments;
     for (const auto& shape : shapes)
@@ -147,7 +178,7 @@ Faults check_economy(const Snapshot& origin, const core::MeshData& after,
     for (const Segment& s : segments_of(shapes))
         segments.emplace_back(s.a, s.b);
     sort_out(segments);
-    add_crossings(segments, origin, reach, places);
+    add_crossings(segments, origin, reach, snap, places);
     for (std::size_t v = 0; v < after.vertices.size(); ++v)
         places.push_back(
             {after.vertices[v].plan(),

@@ -49,12 +49,15 @@ Faults Verifier::step(core::MeshData after, std::span<const core::Shape> shapes,
         options.improve == core::Improve::Paper || options.improve == core::Improve::Bounded;
     all_.insert(all_.end(), shapes.begin(), shapes.end());
     widest_reach_ = std::max(widest_reach_, 2 * chain_reach(edit));
+    widest_snap_ = std::max(widest_snap_, edit.options.snap);
     if (forced != kUncounted && comparable && (!swaps || shapes.size() == 1))
-        append(faults, check_economy(*origin_, next->data, all_, widest_reach_, forced));
+        append(faults,
+               check_economy(*origin_, next->data, all_, widest_reach_, widest_snap_, forced));
     if (swaps || bending != shapes.end()) {
         origin_ = next;
         all_.clear();
         widest_reach_ = 0.0;
+        widest_snap_ = 0.0;
     }
     now_ = next;
     return faults;

@@ -30,6 +30,7 @@ class Verifier {
     std::shared_ptr<const Snapshot> now_;
     std::vector<core::Shape> all_;  ///< what was asked since `origin_`
     double widest_reach_ = 0.0;     ///< of those requests
+    double widest_snap_ = 0.0;      ///< likewise
 };
 
 }  // namespace tinsmith::verify
