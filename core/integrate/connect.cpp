@@ -92,19 +92,22 @@ std::optional<VertexId> March::collect_corridor(VertexId t) {
 
 /// An edge from where the march stands that goes on along the input segment to within rounding, no
 /// farther than `limit`. Rounding bends straight outlines: the way along one may leave the mesh.
+/// The nearest end, but one that is no step away only where there is no other: it may lead nowhere.
 Side March::edge_on_way(double limit) const {
     const double here = along(tin_.plan(at_));
+    const double step = here + reach_of_rounding_ * length_;
     Side best;
     double best_along = here;
-    const auto offer = [&](Side edge, VertexId end) {
-        const Point2 p = tin_.plan(end);
+    for_each_side_at(tin_, at_, [&](Side edge) {
+        const Point2 p = tin_.plan(far_end(edge));
         const double there = along(p);
-        if (there <= here || there > limit || (best.valid() && there >= best_along)) return;
-        if (!is_near_segment(p, near_)) return;
+        if (there <= here || there > limit || !is_near_segment(p, near_)) return;
+        const bool is_better = best_along > step ? there > step && there < best_along
+                                                 : there > step || there > best_along;
+        if (best.valid() && !is_better) return;
         best = edge;
         best_along = there;
-    };
-    for_each_side_at(tin_, at_, [&](Side edge) { offer(edge, far_end(edge)); });
+    });
     return best;
 }
 

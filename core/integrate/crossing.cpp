@@ -121,7 +121,9 @@ Point2 March::intersection(Side edge) const {
     const bool misses =
         options_.snap > 0.0 && orientation(start_, end_, a) == orientation(start_, end_, b);
     const Point2 p = misses ? here : crossing_of(start_, end_, a, b);
-    return misses || along(p) <= along(here) ? crossing_of(here, end_, a, b) : p;
+    const double at = along(p);
+    const bool is_on_way = !misses && at > along(here) && at <= along(end_);
+    return is_on_way ? p : crossing_of(here, end_, a, b);
 }
 
 /// Where two segments that cross do, rounded once: off by an ulp or so in each coordinate. The same

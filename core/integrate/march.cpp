@@ -123,13 +123,14 @@ bool March::march_to_end() {
                 if (!cross(departure.side)) return false;
                 break;
             case Departure::Kind::Outside:
+                if (enter_other_fan()) break;
                 if (const Side edge = detour(along(end_)); edge.valid()) {
                     step_along(edge, far_end(edge));
                 } else if (is_within(tin_.plan(at_), end_, near_)) {
                     // The end is outside, but one with this vertex to within rounding.
                     log_elevation(1.0);
                     return is_as_promised();
-                } else if (!enter_other_fan()) {
+                } else {
                     leave_mesh();
                 }
                 break;

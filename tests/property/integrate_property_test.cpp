@@ -22,12 +22,8 @@ struct Defect {
     std::uint64_t per_million;
 };
 constexpr std::array kOpen{
-    Defect{"G2", 150},          // bounded_snap_off_surface, strips_snap_off_surface
-    Defect{"G3", 150},          // path_through_touching_fans_is_lost_snap and its like
-    Defect{"G8", 500},          // snap_spike_in_strips_more_vertices_than_reasons, ...
-    Defect{"CERTIFIED", 30},    // bounded swaps, seen in needles
-    Defect{"OWN", 20},          // needles only: the vertex may be another path's
-    Defect{"STEP_BUDGET", 20},  // march_without_end_along_an_edge, ...
+    Defect{"G2", 60},   // strips_snap_off_surface: beside cliffs that are an ulp wide
+    Defect{"G8", 200},  // start_at_a_corner_two_vertices and its like: one vertex too many
 };
 
 class IntegrateProperty : public testing::TestWithParam<std::uint64_t> {};
