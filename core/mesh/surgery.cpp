@@ -41,9 +41,10 @@ Surgery::~Surgery() {
     if (open_) roll_back();
 }
 
-Tin::Triangle& Surgery::edit(TriangleId t) {
+/// Keeps a copy of the triangle as it was, if it is an old one that was not changed before.
+inline Tin::Triangle& Surgery::edit(TriangleId t) {
     Tin::Triangle& triangle = tin_.triangles_[t.index()];
-    if (t.index() < record_.triangle_count && (triangle.marks & kLoggedBit) == 0) {
+    if ((triangle.marks & kLoggedBit) == 0) {  // new ones have it from the start
         record_.triangles.emplace_back(t, triangle);
         triangle.marks |= kLoggedBit;
     }
@@ -56,22 +57,26 @@ Tin::Vertex& Surgery::edit(VertexId v) {
     return vertex;
 }
 
-void Surgery::join(Side a, Side b) {
-    if (a.valid()) edit(a.triangle()).twins[a.index()] = b;
-    if (b.valid()) edit(b.triangle()).twins[b.index()] = a;
+/// Makes `to` the twin of `s`, which may be invalid.
+inline void Surgery::link(Side s, Side to) {
+    if (s.valid()) edit(s.triangle()).twins[s.index()] = to;
 }
 
-VertexId Surgery::append(Point3 p, TriangleId t) {
+inline VertexId Surgery::append(Point3 p, TriangleId t) {
     const VertexId id{static_cast<std::uint32_t>(tin_.vertices_.size())};
     tin_.vertices_.push_back({p.x, p.y, p.z, t});
     return id;
 }
 
-TriangleId Surgery::append(const Tin::Triangle& t) {
-    const TriangleId id{static_cast<std::uint32_t>(tin_.triangles_.size())};
+/// The slot that `append` fills next.
+inline TriangleId Surgery::next_triangle() const {
+    return {static_cast<std::uint32_t>(tin_.triangles_.size())};
+}
+
+/// References to triangles are void afterwards.
+inline void Surgery::append(const Tin::Triangle& t) {
     tin_.triangles_.push_back(t);
-    tin_.triangles_.back().marks &= ~kLoggedBit;
-    return id;
+    tin_.triangles_.back().marks |= kLoggedBit;
 }
 
 //            v2                        T  keeps its slot: (v0, v1, p)
@@ -95,14 +100,14 @@ VertexId Surgery::split_triangle(TriangleId t, Point3 point) {
     T.vertices[2] = p;
     set_side_marks(T.marks, 1, 0);
     set_side_marks(T.marks, 2, 0);
-    const TriangleId A = append({{v1, v2, p}, {}, facet, side_marks(marks, 1, 0)});
-    const TriangleId B = append({{v2, v0, p}, {}, facet, side_marks(marks, 2, 0)});
-
-    join({A, 0}, n1);
-    join({B, 0}, n2);
-    join({t, 1}, {A, 2});
-    join({A, 1}, {B, 2});
-    join({B, 1}, {t, 2});
+    const TriangleId A = next_triangle();
+    const TriangleId B{A.value + 1};
+    T.twins[1] = {A, 2};
+    T.twins[2] = {B, 1};
+    append({{v1, v2, p}, {n1, {B, 2}, {t, 1}}, facet, side_marks(marks, 1, 0)});
+    append({{v2, v0, p}, {n2, {t, 2}, {A, 1}}, facet, side_marks(marks, 2, 0)});
+    link(n1, {A, 0});
+    link(n2, {B, 0});
     if (tin_.vertex(v2).triangle == t) edit(v2).triangle = A;
     return p;
 }
@@ -136,18 +141,21 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     if ((marks >> i & 1U) != 0) tin_.constraint_splits_.push_back({a, b, p});
     T.vertices[i1] = p;
     set_side_marks(T.marks, i1, 0);
-    const TriangleId N =
-        append({{p, b, c}, {}, facet, side_marks(marks, i, 0) | side_marks(marks, i1, 1)});
-    join({N, 1}, outer_bc);
-    join({t, i1}, {N, 2});
+    const TriangleId N = next_triangle();
+    const std::uint32_t marks_n = side_marks(marks, i, 0) | side_marks(marks, i1, 1);
+    T.twins[i1] = {N, 2};
     if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
 
     if (!across.valid()) {
-        join({t, i}, {});
-        join({N, 0}, {});
+        append({{p, b, c}, {Side{}, outer_bc, Side{t, i1}}, facet, marks_n});
+        link(outer_bc, {N, 1});
         tin_.boundary_.add_split(a, tin_.plan(a), p, point.plan(), tin_.plan(b));
         return p;
     }
+
+    const TriangleId M{N.value + 1};
+    T.twins[i] = {M, 0};
+    link(outer_bc, {N, 1});
 
     const TriangleId u = across.triangle();
     const unsigned j = across.index();
@@ -160,12 +168,14 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
 
     U.vertices[j1] = p;
     set_side_marks(U.marks, j1, 0);
-    const TriangleId M =
-        append({{p, a, d}, {}, facet_u, side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1)});
-    join({M, 1}, outer_ad);
-    join({u, j1}, {M, 2});
-    join({t, i}, {M, 0});
-    join({u, j}, {N, 0});
+    U.twins[j] = {N, 0};
+    U.twins[j1] = {M, 2};
+    link(outer_ad, {M, 1});
+    append({{p, b, c}, {across, outer_bc, {t, i1}}, facet, marks_n});
+    append({{p, a, d},
+            {s, outer_ad, {u, j1}},
+            facet_u,
+            side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1)});
     if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
     return p;
 }
@@ -205,9 +215,12 @@ Side Surgery::swap_edge(Side s) {
     set_side_marks(T.marks, i1, 0);
     set_side_marks(U.marks, j, marks_bc);
     set_side_marks(U.marks, j1, 0);
-    join({t, i}, outer_ad);
-    join({u, j}, outer_bc);
-    join({t, i1}, {u, j1});
+    T.twins[i] = outer_ad;
+    T.twins[i1] = {u, j1};
+    U.twins[j] = outer_bc;
+    U.twins[j1] = {t, i1};
+    link(outer_ad, {t, i});
+    link(outer_bc, {u, j});
     if (tin_.vertex(b).triangle == t) edit(b).triangle = u;
     if (tin_.vertex(a).triangle == u) edit(a).triangle = t;
     return {t, i1};

@@ -60,6 +60,7 @@ class Surgery {
     static void undo(Tin& tin, const UndoRecord& record);
 
     /// Bits of `Tin::Triangle::marks` that live only while an operation runs.
+    /// A triangle that is new or is in the record.
     static constexpr std::uint32_t kLoggedBit = 1U << 31;
     static constexpr unsigned kFreshShift = 8;
     static constexpr std::uint32_t kTransientBits = kLoggedBit | (7U << kFreshShift);
@@ -69,10 +70,10 @@ class Surgery {
   private:
     Tin::Triangle& edit(TriangleId t);
     Tin::Vertex& edit(VertexId v);
-    /// Makes `a` and `b` twins; either may be invalid.
-    void join(Side a, Side b);
+    void link(Side s, Side to);
     VertexId append(Point3 p, TriangleId t);
-    TriangleId append(const Tin::Triangle& t);
+    TriangleId next_triangle() const;
+    void append(const Tin::Triangle& t);
 
     Tin& tin_;
     UndoRecord record_;
