@@ -43,9 +43,9 @@ bool one_in(Random& random, int count) {
 std::uint64_t unrepresentable_per_million(MeshKind kind) {
     switch (kind) {
         case MeshKind::Needles:
-            return 2200;
+            return 700;
         case MeshKind::Strips:
-            return 600;
+            return 400;
         case MeshKind::Map:
             return 400;
         case MeshKind::FarAway:
