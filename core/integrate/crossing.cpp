@@ -160,9 +160,27 @@ bool March::can_split(Side edge, Point2 p) const {
     const Point2 c = tin_.plan(tin_.apex(edge));
     if (!is_left(a, p, c) || !is_left(p, b, c)) return false;
     const Side across = tin_.twin(edge);
-    if (!across.valid()) return true;
+    if (!across.valid()) return is_clear_of_boundary(edge, p);
     const Point2 d = tin_.plan(tin_.apex(across));
     return is_left(b, p, d) && is_left(p, a, d);
+}
+
+/// Whether a boundary edge bent out to p runs into neither of the boundary edges beside it: where
+/// rounding bent those too, they can be that near.
+bool March::is_clear_of_boundary(Side edge, Point2 p) const {
+    const Point2 a = tin_.plan(tin_.origin(edge));
+    const Point2 b = tin_.plan(tin_.destination(edge));
+    if (orientation(a, b, p) != Clockwise) return true;
+    Side after = edge.next();  // around b, and around a, ends at the fan's other side
+    while (tin_.twin(after).valid())
+        after = tin_.twin(after).next();
+    const Point2 n = tin_.plan(tin_.destination(after));
+    if (orientation(a, b, n) != CounterClockwise && orientation(b, n, p) != Clockwise) return false;
+    Side before = edge.previous();
+    while (tin_.twin(before).valid())
+        before = tin_.twin(before).previous();
+    const Point2 m = tin_.plan(tin_.origin(before));
+    return orientation(m, a, b) == CounterClockwise || orientation(m, a, p) == Clockwise;
 }
 
 /// Whether p is within the distance of the edge. Filtered: costs a plain determinant where it is

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/integrate/improve_across.hpp"
+#include "core/integrate/measure.hpp"
 #include "core/integrate/shape_checks.hpp"
 #include "core/integrate/shape_integration.hpp"
 
@@ -82,6 +83,14 @@ class Request {
             report.edges_swapped += outcome.edges_swapped;
             report.max_vertical_deviation += outcome.max_deviation;
             done_.push_back(surgery.commit());
+        }
+        // A later shape's swaps may have reached an earlier one's triangles.
+        for (std::size_t s = 0; s < shapes_.size(); ++s) {
+            const bool is_last = s + 1 == shapes_.size();
+            const std::size_t end = is_last ? tin_.triangle_count() : done_[s + 1].triangle_count;
+            report_.shapes[s].smallest_angle_deg =
+                measure_operation(tin_, {done_[s], end, &done_[shapes_.size() + s]})
+                    .smallest_angle_deg;
         }
         watch_.lap(report_.time_ms.improve);
     }

@@ -128,6 +128,7 @@ class March {
     Point2 intersection(Side edge) const;
     Point2 crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) const;
     bool can_split(Side edge, Point2 p) const;
+    bool is_clear_of_boundary(Side edge, Point2 p) const;
     bool is_near_segment(Point2 p, double distance) const;
     bool is_near_edge(Side edge, Point2 p, double distance) const;
     bool can_absorb(Side edge, double distance) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/mesh/surface.hpp"
@@ -54,28 +55,68 @@ class Lowest {
     std::vector<double> values_;
 };
 
+/// Vertices that the operation moved up or down, with the elevations they had, in order.
+std::vector<std::pair<VertexId, double>> moved_vertices(const Tin& tin, const UndoRecord& record) {
+    std::vector<std::pair<VertexId, double>> moved;
+    for (const auto& [id, old] : record.vertices)
+        if (old.z != tin.vertex(id).z) moved.emplace_back(id, old.z);
+    // The first record of a vertex is what it was before the operation.
+    std::stable_sort(moved.begin(), moved.end(),
+                     [](const auto& l, const auto& r) { return l.first < r.first; });
+    return moved;
+}
+
 }  // namespace
 
-Measurement measure_operation(const Tin& tin, const UndoRecord& record) {
-    const std::size_t added = tin.triangle_count() - record.triangle_count;
-    Lowest before(record.triangles.size());
-    Lowest after(record.triangles.size() + added);
+Measurement measure_operation(const Tin& tin, const Touched& touched) {
+    const UndoRecord& march = touched.march;
+    const std::size_t most = march.triangles.size() + touched.triangle_end - march.triangle_count +
+                             (touched.across != nullptr ? touched.across->triangles.size() : 0);
+    Lowest before(most);
+    Lowest after(most);
     double steepest = 0.0;  // squared
-    // Old slots keep their vertices, and vertices their positions, so the old triangle is there.
     const auto shape = [&tin](const Tin::Triangle& t) {
         return TriangleShape(tin.vertex(t.vertices[0]).point(), tin.vertex(t.vertices[1]).point(),
                              tin.vertex(t.vertices[2]).point());
     };
-    for (const auto& [id, old] : record.triangles) {
+    // Vertices keep their slots and plan positions: the old triangle is there but for elevations.
+    const auto moved = moved_vertices(tin, march);
+    const auto corner_before = [&](VertexId v) {
+        Point3 p = tin.vertex(v).point();
+        const auto found =
+            std::lower_bound(moved.begin(), moved.end(), v,
+                             [](const auto& entry, VertexId id) { return entry.first < id; });
+        if (found != moved.end() && found->first == v) p.z = found->second;
+        return p;
+    };
+    const auto shape_before = [&](const Tin::Triangle& t) {
+        if (moved.empty()) return shape(t);
+        return TriangleShape(corner_before(t.vertices[0]), corner_before(t.vertices[1]),
+                             corner_before(t.vertices[2]));
+    };
+    const auto add = [&](TriangleId id, const Tin::Triangle& old) {
         const Tin::Triangle& now = tin.triangle(id);
-        if (old.vertices == now.vertices) continue;  // a neighbour's link changed only
-        const TriangleShape was = shape(old);
+        // A neighbour's link changed only.
+        if (old.vertices == now.vertices && old.facet == now.facet) return;
+        const TriangleShape was = shape_before(old);
         before.add(was);
         if (was.is_steeper_than(steepest)) steepest = was.squared_slope();
         after.add(shape(now));
-    }
-    for (std::size_t t = record.triangle_count; t < tin.triangle_count(); ++t)
+    };
+    for (const auto& [id, old] : march.triangles)
+        add(id, old);
+    for (std::size_t t = march.triangle_count; t < touched.triangle_end; ++t)
         after.add(shape(tin.triangle({static_cast<std::uint32_t>(t)})));
+    if (touched.across != nullptr) {
+        std::vector<TriangleId> known;
+        for (const auto& [id, old] : march.triangles)
+            known.push_back(id);
+        std::sort(known.begin(), known.end());
+        for (const auto& [id, old] : touched.across->triangles)
+            if (id.index() < march.triangle_count &&
+                !std::binary_search(known.begin(), known.end(), id))
+                add(id, old);
+    }
 
     Measurement result;
     result.steepest_slope = std::sqrt(steepest);

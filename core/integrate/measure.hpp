@@ -6,12 +6,20 @@
 
 namespace tinsmith::core {
 
-/// What an operation did to the triangles it touched, from its undo record. Cost: linear in them.
+/// What an operation did to the triangles it touched.
 struct Measurement {
     AngleSummary smallest_angle_deg;
     double steepest_slope = 0.0;  ///< of the touched triangles as they were
 };
 
-Measurement measure_operation(const Tin& tin, const UndoRecord& record);
+/// The records of one shape: of its march, and of swaps across facets that followed it, if any.
+struct Touched {
+    const UndoRecord& march;
+    std::size_t triangle_end;  ///< how many triangles there were after the march
+    const UndoRecord* across = nullptr;
+};
+
+/// Cost: linear in the triangles touched.
+Measurement measure_operation(const Tin& tin, const Touched& touched);
 
 }  // namespace tinsmith::core

@@ -109,7 +109,7 @@ ShapeReport ShapeIntegration::report() {
     report.chains = tally.chains;
     report.max_plan_deviation = tally.max_plan_deviation;
     report.max_elevation_change = max_elevation_change_;
-    const Measurement measured = measure_operation(tin, record);
+    const Measurement measured = measure_operation(tin, {record, tin.triangle_count()});
     report.smallest_angle_deg = measured.smallest_angle_deg;
     if (report.vertices_added > 0 || report.edges_swapped > 0)
         report.max_vertical_deviation = certify(measured.steepest_slope);

@@ -182,11 +182,11 @@ TEST(HardCase, InsideASingleTriangle) {
     EXPECT_EQ(outcome.shape().crossings, 0u);
 }
 
-TEST(HardCase, TwentyThousandNoisySegmentsInsideASingleTriangle) {
+TEST(HardCase, AHundredThousandNoisySegmentsInsideASingleTriangle) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> noise(0.999, 1.001);
     Shape shape = ring({});
-    constexpr int kCount = 20'000;
+    constexpr int kCount = 100'000;
     for (int i = 0; i < kCount; ++i) {
         const double angle = 6.283185307179586 * i / kCount, r = 20.0 * noise(random);
         shape.paths[0].points.push_back({30 + r * std::cos(angle), 30 + r * std::sin(angle)});
@@ -197,6 +197,22 @@ TEST(HardCase, TwentyThousandNoisySegmentsInsideASingleTriangle) {
     EXPECT_EQ(outcome.shape().vertices_added, static_cast<std::uint64_t>(kCount));
     EXPECT_EQ(outcome.shape().segments, static_cast<std::uint64_t>(kCount));
     EXPECT_EQ(outcome.shape().crossings, 0u);
+}
+
+TEST(HardCase, ARingOfAHundredThousandSegments) {
+    constexpr int kCount = 100'000;
+    Shape shape = ring({});
+    for (int i = 0; i < kCount; ++i) {
+        const double angle = 6.283185307179586 * i / kCount;
+        const double r = 8.0 + 1.5 * std::sin(40 * angle);
+        shape.paths[0].points.push_back({10 + r * std::cos(angle), 10 + r * std::sin(angle)});
+    }
+    Tin tin = built(grid(20, 20));
+    const Outcome outcome = integrate_checked(tin, {shape});
+    ASSERT_EQ(outcome.broken, "");
+    EXPECT_EQ(outcome.shape().segments, static_cast<std::uint64_t>(kCount));
+    EXPECT_GT(outcome.shape().crossings, 200u);
+    EXPECT_EQ(outcome.shape().chains.size(), 1u);
 }
 
 TEST(HardCase, AMillionthOfAMetreInsideASingleTriangle) {

@@ -178,8 +178,7 @@ TEST_P(Lattice, LongSequencesOfSegmentsOnOneMesh) {
                 return frame().at(i / 3.0 - 0.5, static_cast<double>(random() % 13) / 3.0 - 0.5);
             };
             const Point2 a = point(), b = point(), c = point();
-            const auto outcome =
-                test::integrate_checked(tin, {test::line({a, b, c})}, {}, false);
+            const auto outcome = test::integrate_checked(tin, {test::line({a, b, c})}, {}, false);
             if (outcome.broken.starts_with("OUTSIDE_MESH")) continue;
             if (outcome.broken.starts_with("NOT_REPRESENTABLE") &&
                 !outcome.broken.ends_with("changed")) {

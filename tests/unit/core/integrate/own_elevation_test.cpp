@@ -111,6 +111,14 @@ TEST(OwnElevation, ThenStrictMovesNothing) {
     EXPECT_EQ(outcome.broken, "");
 }
 
+TEST(OwnElevation, AnglesBeforeAreThoseOfTheGroundAsItWas) {
+    // One level triangle whose corner is lifted: half of a square, 45 degrees, before.
+    Tin tin = built({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}});
+    const Report report = integrated(tin, breakline({{0, 0}}, {100}));
+    EXPECT_NEAR(report.shapes[0].smallest_angle_deg.before, 45.0, 1e-9);
+    EXPECT_LT(report.shapes[0].smallest_angle_deg.after, 1.0);
+}
+
 TEST(OwnElevation, IsTakenBackBitForBit) {
     Tin tin = built(grid(5, 5));
     const Tin before = tin;
