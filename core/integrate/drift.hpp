@@ -21,13 +21,14 @@ class Drift {
     /// is more than the rounding of one position; session unit. Zero for vertices that were there
     /// before the request.
     double bend_of(VertexId v) const { return knows(v) ? of_[v.index() - first_].bend : 0.0; }
-    /// Remembers the larger of this and what is known. Vertices from before the request do not
-    /// move: theirs is not kept.
+    /// Remembers the larger of this and what is known. An edge may come to run through a vertex
+    /// from before the request: that counts among the largest, but is not kept for the vertex,
+    /// which did not move.
     void bend(VertexId v, double bend) {
+        largest_bend_ = std::max(largest_bend_, bend);
         if (v.index() < first_) return;
         double& known = at(v).bend;
         known = std::max(known, bend);
-        largest_bend_ = std::max(largest_bend_, bend);
     }
     double largest_bend() const { return largest_bend_; }
 
