@@ -11,7 +11,8 @@ namespace tinsmith::api {
 
 /// What is wrong with the shapes' elevations if the surface is to take them, at most `most` faults:
 /// positions without one or with one that is no length, rings that end at another elevation than
-/// they began, and two elevations in one place. No fault: each path has one elevation for each point. Cost: linear.
+/// they began, and two elevations in one place. No fault: each path has one elevation for each
+/// point. Cost: linear.
 Faults elevation_faults(std::span<const RequestedShape> shapes, std::size_t most);
 
 /// Makes the shapes what they would be had they been drawn in plan: to be draped.
