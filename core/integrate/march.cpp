@@ -147,9 +147,7 @@ Side March::first_look() const {
 /// The end of the segment is where the march stands, or within snap of it.
 bool March::has_arrived() const {
     const Point2 p = tin_.plan(at_);
-    if (p == end_) return true;
-    if (!(snap_ > 0.0)) return false;
-    return (p.x - end_.x) * (p.x - end_.x) + (p.y - end_.y) * (p.y - end_.y) <= snap_ * snap_;
+    return p == end_ || (snap_ > 0.0 && is_within(p, end_, snap_));
 }
 
 bool March::finish() {
