@@ -10,7 +10,7 @@
 namespace tinsmith::core {
 
 CrossFacetImprover::Outcome CrossFacetImprover::improve(Surgery& surgery,
-                                                        const std::vector<VertexId>& vertices) {
+                                                        std::span<const VertexId> vertices) {
     Outcome outcome;
     SwapCandidates candidates(surgery.tin());
     for (const VertexId v : vertices) {

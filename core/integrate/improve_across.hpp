@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -47,7 +48,7 @@ class CrossFacetImprover {
     /// Improves around the vertices and as far as swaps reach from there. Ends: by the second
     /// condition the sorted list of all aspects only gets better, and there are finitely many
     /// triangulations. Cost: linear in the swaps.
-    Outcome improve(Surgery& surgery, const std::vector<VertexId>& vertices);
+    Outcome improve(Surgery& surgery, std::span<const VertexId> vertices);
 
     /// Certified bound on the vertical distance of the surface from the one before the first call,
     /// session unit.

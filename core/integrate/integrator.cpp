@@ -37,7 +37,7 @@ class Request {
         if (leaves && options_.outside == Outside::Reject) return leaving_errors(report_);
         watch_.lap(report_.time_ms.integrate);
         if (options_.improve == Improve::Paper || options_.improve == Improve::Bounded)
-            improve_across_facets();
+            if (std::optional<Error> error = improve_across_facets()) return *error;
         return std::move(report_);
     }
 
@@ -69,7 +69,7 @@ class Request {
     }
 
     /// Once all shapes are in, so that they cross no edge but those of the mesh before the request.
-    void improve_across_facets() {
+    std::optional<Error> improve_across_facets() {
         CrossFacetImprover improver = options_.improve == Improve::Bounded
                                           ? CrossFacetImprover(options_.max_deviation)
                                           : CrossFacetImprover();
@@ -78,10 +78,9 @@ class Request {
         done_.reserve(done_.size() + shapes_.size());
         for (std::size_t s = 0; s < shapes_.size(); ++s) {
             Surgery surgery(tin_);
-            const auto outcome = improver.improve(surgery, changed_[s]);
-            ShapeReport& report = report_.shapes[s];
-            report.edges_swapped += outcome.edges_swapped;
-            report.max_vertical_deviation += outcome.max_deviation;
+            if (!improve_across_facets(improver, surgery, s))
+                return Error{
+                    ErrorCode::Cancelled, "the request was cancelled; nothing was changed", {}};
             done_.push_back(surgery.commit());
         }
         // A later shape's swaps may have reached an earlier one's triangles.
@@ -93,6 +92,24 @@ class Request {
                     .smallest_angle_deg;
         }
         watch_.lap(report_.time_ms.improve);
+        return std::nullopt;
+    }
+
+    /// One shape's, some vertices at a time. False: the caller said stop.
+    bool improve_across_facets(CrossFacetImprover& improver, Surgery& surgery, std::size_t s) {
+        constexpr std::size_t kAskEvery = 256;
+        ShapeReport& report = report_.shapes[s];
+        double deviation = 0.0;
+        const std::span<const VertexId> vertices = changed_[s];
+        for (std::size_t i = 0; i < vertices.size(); i += kAskEvery) {
+            if (options_.cancelled && options_.cancelled()) return false;
+            const auto outcome = improver.improve(
+                surgery, vertices.subspan(i, std::min(kAskEvery, vertices.size() - i)));
+            report.edges_swapped += outcome.edges_swapped;
+            deviation = std::max(deviation, outcome.max_deviation);
+        }
+        report.max_vertical_deviation += deviation;
+        return true;
     }
 
     Tin& tin_;

@@ -152,7 +152,7 @@ TEST(ImproveAcross, AddsToWhatTheTrianglesCarryAlready) {
     Tin tin = built(mesh);
     CrossFacetImprover improver;
     Surgery surgery(tin);
-    const auto outcome = improver.improve(surgery, {VertexId{3}});
+    const auto outcome = improver.improve(surgery, std::vector<VertexId>{VertexId{3}});
     EXPECT_EQ(outcome.edges_swapped, 2u);
     EXPECT_NEAR(outcome.max_deviation, 0.25 + second, 1e-9);
     EXPECT_GE(outcome.max_deviation, 0.25 + second);
@@ -160,7 +160,7 @@ TEST(ImproveAcross, AddsToWhatTheTrianglesCarryAlready) {
     surgery.roll_back();
     CrossFacetImprover bounded(0.25 + second / 2);
     Surgery again(tin);
-    EXPECT_EQ(bounded.improve(again, {VertexId{3}}).edges_swapped, 1u);
+    EXPECT_EQ(bounded.improve(again, std::vector<VertexId>{VertexId{3}}).edges_swapped, 1u);
 }
 
 TEST(ImproveAcross, WhatEitherTriangleCarriesCounts) {
@@ -171,10 +171,10 @@ TEST(ImproveAcross, WhatEitherTriangleCarriesCounts) {
     CrossFacetImprover improver;
     Surgery surgery(tin);
     surgery.set_locked(find_edge(tin, {1}, {2}), true);
-    ASSERT_EQ(improver.improve(surgery, {VertexId{3}}).edges_swapped, 1u);
+    ASSERT_EQ(improver.improve(surgery, std::vector<VertexId>{VertexId{3}}).edges_swapped, 1u);
     surgery.set_locked(find_edge(tin, {1}, {2}), false);
     // From vertex 4 the edge is seen from the sliver, which carries nothing.
-    const auto outcome = improver.improve(surgery, {VertexId{4}});
+    const auto outcome = improver.improve(surgery, std::vector<VertexId>{VertexId{4}});
     EXPECT_EQ(outcome.edges_swapped, 1u);
     EXPECT_GT(outcome.max_deviation, 0.25);
 }

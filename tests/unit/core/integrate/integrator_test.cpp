@@ -225,6 +225,26 @@ TEST(Integrate, StopsWhenCancelledAtAnyTime) {
     }
 }
 
+TEST(Integrate, StopsWhenCancelledAmongSwapsAcrossFacets) {
+    Tin whole = built(grid(20, 20));
+    IntegrateOptions options;
+    options.improve = Improve::Paper;
+    int asked = 0;
+    options.cancelled = [&] { return ++asked < 0; };
+    const Shape shape = test::ring({{0.3, 0.2}, {19.6, 1.4}, {18.2, 19.5}, {1.7, 18.1}});
+    ASSERT_TRUE(integrate(whole, {&shape, 1}, options).ok());
+    // The last question is asked when all is marched.
+    const int last = asked;
+    Tin tin = built(grid(20, 20));
+    const MeshData before = tin.to_data();
+    asked = 0;
+    options.cancelled = [&] { return ++asked == last; };
+    const auto report = integrate(tin, {&shape, 1}, options);
+    ASSERT_FALSE(report.ok());
+    EXPECT_EQ(report.errors()[0].code, ErrorCode::Cancelled);
+    EXPECT_TRUE(test::same_bytes(before, tin.to_data()));
+}
+
 TEST(Integrate, AsksWhetherItIsCancelledAlsoWhenThereAreOnlyPoints) {
     Shape points;
     for (int i = 0; i < 2000; ++i)
