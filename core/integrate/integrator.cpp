@@ -29,6 +29,7 @@ class Request {
     ~Request() { take_back(tin_, done_); }
 
     Result<Report> run() {
+        done_.reserve(2 * shapes_.size());  // once: to keep a record must not fail
         for (std::size_t s = 0; s < shapes_.size(); ++s)
             if (std::optional<Error> error = integrate_shape(s)) return *error;
         if (!met_mesh_ && !encloses_mesh(tin_, shapes_)) return outside_error(tin_, shapes_);
@@ -46,7 +47,6 @@ class Request {
 
   private:
     std::optional<Error> integrate_shape(std::size_t s) {
-        done_.reserve(done_.size() + 1);
         Surgery surgery(tin_);
         ShapeIntegration integration(surgery, options_, limits_, drift_, watch_, report_.time_ms);
         if (!integration.run(shapes_[s])) {
@@ -75,7 +75,6 @@ class Request {
                                           : CrossFacetImprover();
         std::sort(set_vertices_.begin(), set_vertices_.end());
         improver.hold_to(std::move(set_vertices_));
-        done_.reserve(done_.size() + shapes_.size());
         for (std::size_t s = 0; s < shapes_.size(); ++s) {
             Surgery surgery(tin_);
             if (!improve_across_facets(improver, surgery, s))
