@@ -93,7 +93,7 @@ inline void Improver::add_at(Side side, std::uint32_t newest) {
 }
 
 inline bool Improver::may_swap(Side s) const {
-    return !tin_.is_fixed(s) && !tin_.separates_facets(s);
+    return tin_.is_free(s);
 }
 
 //        c            T = (a, b, c) and U = (b, a, d), in one facet;

@@ -21,6 +21,12 @@ class Lowest {
         values_.reserve(std::min(most, 2 * keep_));
     }
 
+    /// What is not below it is of no interest any more.
+    double bound() const { return bound_; }
+
+    /// Counts a triangle whose value is not below the bound.
+    void pass_over() { ++count_; }
+
     void add(const TriangleShape& shape) {
         ++count_;
         if (!shape.has_angle_below(bound_)) return;  // spares most triangles a division
@@ -55,6 +61,51 @@ class Lowest {
     std::vector<double> values_;
 };
 
+/// What a triangle is like, at a glance: right to a hundredth, which is enough to pass over most.
+class Glance {
+  public:
+    Glance(const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c) {
+        const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
+        const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+        const double nx = uy * vz - uz * vy;
+        const double ny = uz * vx - ux * vz;
+        const double nz = ux * vy - uy * vx;
+        level_squared_ = nx * nx + ny * ny;
+        upright_squared_ = nz * nz;
+        // Half the sum of the three squared edges: no less than the mean of the two longest.
+        const double half = (ux * ux + uy * uy + uz * uz) + (vx * vx + vy * vy + vz * vz) -
+                            (ux * vx + uy * vy + uz * vz);
+        longest_squared_ = half * half;
+    }
+
+    /// Never true where `TriangleShape::has_angle_below` is.
+    bool is_blunter_than(double bound) const {
+        // Rounding is below 2^-50 of `half`: below a thousandth of nz for angles as large as that.
+        constexpr double kLeast = 0x1p-78;
+        return upright_squared_ > kMargin * std::max(bound, kLeast) * longest_squared_;
+    }
+    /// Never true where `TriangleShape::is_steeper_than` is. Requires: not a needle, see above.
+    bool is_flatter_than(double squared_slope) const {
+        return kMargin * level_squared_ <= squared_slope * upright_squared_;
+    }
+
+  private:
+    static constexpr double kMargin = 1.01;
+    double level_squared_;    ///< of the normal that is as long as twice the area
+    double upright_squared_;  ///< of its vertical part
+    double longest_squared_;  ///< no less than the product of the two longest edges, squared
+};
+
+/// Asks for what comes a few triangles later: the record names old triangles in the order in which
+/// they were met, and they may have left the cache since.
+void fetch_ahead(const Tin& tin, const UndoRecord& record, std::size_t i) {
+    constexpr std::size_t kTriangles = 16, kVertices = 8;
+    if (i + kTriangles >= record.triangles.size()) return;
+    __builtin_prefetch(&tin.triangle(record.triangles[i + kTriangles].first));
+    for (const VertexId v : record.triangles[i + kVertices].second.vertices)
+        __builtin_prefetch(&tin.vertex(v));
+}
+
 /// Vertices that the operation moved up or down, with the elevations they had, in order.
 std::vector<std::pair<VertexId, double>> moved_vertices(const Tin& tin, const UndoRecord& record) {
     std::vector<std::pair<VertexId, double>> moved;
@@ -75,38 +126,48 @@ Measurement measure_operation(const Tin& tin, const Touched& touched) {
     Lowest before(most);
     Lowest after(most);
     double steepest = 0.0;  // squared
-    const auto shape = [&tin](const Tin::Triangle& t) {
-        return TriangleShape(tin.vertex(t.vertices[0]).point(), tin.vertex(t.vertices[1]).point(),
-                             tin.vertex(t.vertices[2]).point());
-    };
     // Vertices keep their slots and plan positions: the old triangle is there but for elevations.
     const auto moved = moved_vertices(tin, march);
     const auto corner_before = [&](VertexId v) {
-        Point3 p = tin.vertex(v).point();
+        Tin::Vertex corner = tin.vertex(v);
         const auto found =
             std::lower_bound(moved.begin(), moved.end(), v,
                              [](const auto& entry, VertexId id) { return entry.first < id; });
-        if (found != moved.end() && found->first == v) p.z = found->second;
-        return p;
+        if (found != moved.end() && found->first == v) corner.z = found->second;
+        return corner;
     };
-    const auto shape_before = [&](const Tin::Triangle& t) {
-        if (moved.empty()) return shape(t);
-        return TriangleShape(corner_before(t.vertices[0]), corner_before(t.vertices[1]),
-                             corner_before(t.vertices[2]));
+    const auto add_before = [&](const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c) {
+        const Glance glance(a, b, c);
+        if (glance.is_blunter_than(before.bound()) && glance.is_flatter_than(steepest))
+            return before.pass_over();
+        const TriangleShape was(a.point(), b.point(), c.point());
+        before.add(was);
+        if (was.is_steeper_than(steepest)) steepest = was.squared_slope();
+    };
+    const auto add_after = [&](const Tin::Triangle& t) {
+        const Tin::Vertex& a = tin.vertex(t.vertices[0]);
+        const Tin::Vertex& b = tin.vertex(t.vertices[1]);
+        const Tin::Vertex& c = tin.vertex(t.vertices[2]);
+        if (Glance(a, b, c).is_blunter_than(after.bound())) return after.pass_over();
+        after.add({a.point(), b.point(), c.point()});
     };
     const auto add = [&](TriangleId id, const Tin::Triangle& old) {
         const Tin::Triangle& now = tin.triangle(id);
         // A neighbour's link changed only.
         if (old.vertices == now.vertices && old.facet == now.facet) return;
-        const TriangleShape was = shape_before(old);
-        before.add(was);
-        if (was.is_steeper_than(steepest)) steepest = was.squared_slope();
-        after.add(shape(now));
+        const auto& [a, b, c] = old.vertices;
+        if (moved.empty())
+            add_before(tin.vertex(a), tin.vertex(b), tin.vertex(c));
+        else
+            add_before(corner_before(a), corner_before(b), corner_before(c));
+        add_after(now);
     };
-    for (const auto& [id, old] : march.triangles)
-        add(id, old);
+    for (std::size_t i = 0; i < march.triangles.size(); ++i) {
+        fetch_ahead(tin, march, i);
+        add(march.triangles[i].first, march.triangles[i].second);
+    }
     for (std::size_t t = march.triangle_count; t < touched.triangle_end; ++t)
-        after.add(shape(tin.triangle({static_cast<std::uint32_t>(t)})));
+        add_after(tin.triangle({static_cast<std::uint32_t>(t)}));
     if (touched.across != nullptr) {
         std::vector<TriangleId> known;
         for (const auto& [id, old] : march.triangles)

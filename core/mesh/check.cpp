@@ -68,11 +68,14 @@ class Checker {
         const auto [a, b, c] = triangle.vertices;
         if (!is_left(tin_.plan(a), tin_.plan(b), tin_.plan(c)))
             add("orientation", name(t) + " is not strictly counter-clockwise");
-        if ((triangle.marks & ~0x77U) != 0) add("marks", name(t) + " has marks of no meaning");
+        if ((triangle.marks & ~0x7077U) != 0) add("marks", name(t) + " has marks of no meaning");
         for (unsigned i = 0; i < 3; ++i) {
             ++corners_[triangle.vertices[i].index()];
             const Side side(t, i);
             const Side twin = tin_.twin(side);
+            const bool inside = twin.valid() && tin_.facet(twin.triangle()) == triangle.facet;
+            if (inside == tin_.separates_facets(side))
+                add("marks", name(t) + " is wrong about where its facet ends");
             if (!twin.valid()) continue;
             if (tin_.twin(twin) != side || tin_.origin(twin) != tin_.destination(side) ||
                 tin_.destination(twin) != tin_.origin(side))

@@ -21,6 +21,11 @@ std::uint32_t side_marks(std::uint32_t marks, unsigned from, unsigned to) {
     return ((marks >> from) & Surgery::kSideBits) << to;
 }
 
+/// The marks of side `i` alone, inside a facet.
+std::uint32_t inside(unsigned i) {
+    return 1U << (Surgery::kInsideShift + i);
+}
+
 void set_side_marks(std::uint32_t& marks, unsigned side, std::uint32_t moved) {
     marks = (marks & ~(Surgery::kSideBits << side)) | moved;
 }
@@ -96,16 +101,17 @@ VertexId Surgery::split_triangle(TriangleId t, Point3 point) {
     const std::uint32_t marks = T.marks;
     const FacetId facet = T.facet;
 
+    const std::uint32_t within = inside(1) | inside(2);
     const VertexId p = append(point, t);
     T.vertices[2] = p;
-    set_side_marks(T.marks, 1, 0);
-    set_side_marks(T.marks, 2, 0);
+    set_side_marks(T.marks, 1, inside(1));
+    set_side_marks(T.marks, 2, inside(2));
     const TriangleId A = next_triangle();
     const TriangleId B{A.value + 1};
     T.twins[1] = {A, 2};
     T.twins[2] = {B, 1};
-    append({{v1, v2, p}, {n1, {B, 2}, {t, 1}}, facet, side_marks(marks, 1, 0)});
-    append({{v2, v0, p}, {n2, {t, 2}, {A, 1}}, facet, side_marks(marks, 2, 0)});
+    append({{v1, v2, p}, {n1, {B, 2}, {t, 1}}, facet, side_marks(marks, 1, 0) | within});
+    append({{v2, v0, p}, {n2, {t, 2}, {A, 1}}, facet, side_marks(marks, 2, 0) | within});
     link(n1, {A, 0});
     link(n2, {B, 0});
     if (tin_.vertex(v2).triangle == t) edit(v2).triangle = A;
@@ -140,9 +146,9 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     const VertexId p = append(point, t);
     if ((marks >> i & 1U) != 0) tin_.constraint_splits_.push_back({a, b, p});
     T.vertices[i1] = p;
-    set_side_marks(T.marks, i1, 0);
+    set_side_marks(T.marks, i1, inside(i1));
     const TriangleId N = next_triangle();
-    const std::uint32_t marks_n = side_marks(marks, i, 0) | side_marks(marks, i1, 1);
+    const std::uint32_t marks_n = side_marks(marks, i, 0) | side_marks(marks, i1, 1) | inside(2);
     T.twins[i1] = {N, 2};
     if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
 
@@ -167,7 +173,7 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     const Side outer_ad = U.twins[j1];
 
     U.vertices[j1] = p;
-    set_side_marks(U.marks, j1, 0);
+    set_side_marks(U.marks, j1, inside(j1));
     U.twins[j] = {N, 0};
     U.twins[j1] = {M, 2};
     link(outer_ad, {M, 1});
@@ -175,7 +181,7 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     append({{p, a, d},
             {s, outer_ad, {u, j1}},
             facet_u,
-            side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1)});
+            side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1) | inside(2)});
     if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
     return p;
 }
@@ -211,10 +217,11 @@ Side Surgery::swap_edge(Side s) {
 
     T.vertices[i1] = d;
     U.vertices[j1] = c;
+    const bool is_inside = (T.marks & inside(i)) != 0;
     set_side_marks(T.marks, i, marks_ad);
-    set_side_marks(T.marks, i1, 0);
+    set_side_marks(T.marks, i1, is_inside ? inside(i1) : 0);
     set_side_marks(U.marks, j, marks_bc);
-    set_side_marks(U.marks, j1, 0);
+    set_side_marks(U.marks, j1, is_inside ? inside(j1) : 0);
     T.twins[i] = outer_ad;
     T.twins[i1] = {u, j1};
     U.twins[j] = outer_bc;
@@ -245,10 +252,15 @@ void Surgery::absorb_apex(Side s) {
         tin_.constraint_splits_.push_back({tin_.origin(s), tin_.destination(s), tin_.apex(s)});
     swap_edge(s);  // T (a, d, c): c -> a is side i + 2; U (b, c, d): b -> c is side j
     edit(t).facet = facet;
+    for (unsigned k = 0; k < 3; ++k) {
+        renew_inside({t, k});
+        renew_inside({u, k});
+    }
     const auto add_marks = [this, marks, i](Side side) {
-        edit(side.triangle()).marks |= side_marks(marks, i, side.index());
+        const std::uint32_t moved = marks & ~inside(i);
+        edit(side.triangle()).marks |= side_marks(moved, i, side.index());
         const Side other = tin_.twin(side);
-        if (other.valid()) edit(other.triangle()).marks |= side_marks(marks, i, other.index());
+        if (other.valid()) edit(other.triangle()).marks |= side_marks(moved, i, other.index());
     };
     add_marks({t, previous_of(i)});
     add_marks({u, across.index()});
@@ -288,7 +300,20 @@ void Surgery::raise_facet_error(double error) {
 }
 
 FacetId Surgery::give_fresh_facet(TriangleId t) {
-    return edit(t).facet = {tin_.next_facet_++};
+    edit(t).facet = {tin_.next_facet_++};
+    for (unsigned i = 0; i < 3; ++i)
+        renew_inside({t, i});
+    return tin_.facet(t);
+}
+
+/// After a facet changed: marks the edge on both sides as inside a facet, or not.
+void Surgery::renew_inside(Side s) {
+    const Side across = tin_.twin(s);
+    const bool is_inside =
+        across.valid() && tin_.facet(s.triangle()) == tin_.facet(across.triangle());
+    if (is_inside != tin_.separates_facets(s)) return;
+    edit(s.triangle()).marks ^= inside(s.index());
+    if (across.valid()) edit(across.triangle()).marks ^= inside(across.index());
 }
 
 UndoRecord Surgery::commit() {

@@ -63,14 +63,17 @@ class Surgery {
     /// A triangle that is new or is in the record.
     static constexpr std::uint32_t kLoggedBit = 1U << 31;
     static constexpr unsigned kFreshShift = 8;
+    static constexpr unsigned kInsideShift = 12;
     static constexpr std::uint32_t kTransientBits = kLoggedBit | (7U << kFreshShift);
     /// The bits of side 0 in `marks`; side i has them shifted left by i.
-    static constexpr std::uint32_t kSideBits = 1U | (1U << 4) | (1U << kFreshShift);
+    static constexpr std::uint32_t kSideBits =
+        1U | (1U << 4) | (1U << kFreshShift) | (1U << kInsideShift);
 
   private:
     Tin::Triangle& edit(TriangleId t);
     Tin::Vertex& edit(VertexId v);
     void link(Side s, Side to);
+    void renew_inside(Side s);
     VertexId append(Point3 p, TriangleId t);
     TriangleId next_triangle() const;
     void append(const Tin::Triangle& t);

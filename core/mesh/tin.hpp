@@ -32,7 +32,7 @@ struct ConstraintSplit {
 ///   1. every triangle is strictly counter-clockwise in plan, by the exact predicate;
 ///   2. adjacency is symmetric: the twin of a side's twin is the side;
 ///   3. a vertex's triangle contains it; every vertex has one, and one fan of triangles only;
-///   4. both sides of an edge carry the same marks;
+///   4. both sides of an edge carry the same marks, and say rightly whether it is inside a facet;
 ///   5. all coordinates are finite and within kCoordinateLimit.
 ///
 /// Local numbering, for the whole library:
@@ -64,7 +64,9 @@ class Tin {
         std::array<VertexId, 3> vertices;
         std::array<Side, 3> twins;
         FacetId facet;
-        std::uint32_t marks = 0;  ///< bit i: side i is constrained; bit 4 + i: side i is locked
+        /// Bit i: side i is constrained; bit 4 + i: it is locked; bit 12 + i: it is inside a facet,
+        /// the triangle across lies in the same one.
+        std::uint32_t marks = 0;
 
         friend bool operator==(const Triangle&, const Triangle&) = default;
     };
@@ -98,10 +100,15 @@ class Tin {
 
     /// True where a swap may not touch the edge whatever the mode: boundary, constrained, locked.
     bool is_fixed(Side s) const { return !twin(s).valid() || is_constrained(s) || is_locked(s); }
-    /// True where the surface may bend along the edge: its triangles lie in different facets.
+    /// True where the surface may bend along the edge: its triangles lie in different facets, or it
+    /// has only one. Like all marks, it takes no look at the triangle across.
     bool separates_facets(Side s) const {
-        const Side t = twin(s);
-        return !t.valid() || facet(s.triangle()) != facet(t.triangle());
+        return ((triangle(s.triangle()).marks >> (s.index() + 12)) & 1U) == 0;
+    }
+    /// True where a swap moves nothing and nothing forbids it: inside a facet, neither constrained
+    /// nor locked.
+    bool is_free(Side s) const {
+        return ((triangle(s.triangle()).marks >> s.index()) & 0x1011U) == 0x1000U;
     }
 
     /// Certified: no vertex is farther above or below the plane of a facet around it, session unit.
