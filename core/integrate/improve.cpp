@@ -77,6 +77,13 @@ void Improver::improve(const std::vector<VertexId>& vertices) {
     }
 }
 
+bool Improver::improve(Side s) {
+    if (!may_swap(s) || !should_swap(s)) return false;
+    surgery_.swap_edge(s);
+    ++edges_swapped_;
+    return true;
+}
+
 /// Adds the edges at the vertex, and those across from it in its triangles.
 void Improver::add_star(VertexId v) {
     const std::uint32_t newest = std::max(v.value, static_cast<std::uint32_t>(seen_ - 1));

@@ -30,6 +30,9 @@ class Improver {
     /// the swaps.
     void improve(const std::vector<VertexId>& vertices);
 
+    /// Swaps one edge if it is free to and better swapped. False: it stays.
+    bool improve(Side s);
+
     std::uint64_t edges_swapped() const { return edges_swapped_; }
 
   private:

@@ -21,8 +21,13 @@ bool is_within(Point2 p, Point2 q, double distance) {
 }  // namespace
 
 March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-             Drift& drift)
-    : surgery_(surgery), tin_(surgery.tin()), options_(options), limits_(limits), drift_(drift) {
+             Drift& drift, Improver* improver)
+    : surgery_(surgery),
+      tin_(surgery.tin()),
+      options_(options),
+      limits_(limits),
+      drift_(drift),
+      improver_(improver) {
     const Bounds& box = tin_.bounds();
     const double largest = std::max(
         {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
@@ -67,6 +72,7 @@ bool March::advance(std::size_t to) {
     to_ = to;
     ++tally_.segments;
     set_segment(end_, path_->points[to]);
+    ahead_ = path_->points[to + 1 < path_->points.size() ? to + 1 : 0];
     bool done = march_to_end();
     // Where snapping led into a dead end, the rest of the segment goes straight.
     if (!done && snap_ > 0.0 && error_ &&
@@ -119,9 +125,11 @@ bool March::march_to_end() {
             case Departure::Kind::AlongEdge:
                 if (!follow(departure)) return false;
                 break;
-            case Departure::Kind::ThroughEdge:
-                if (!cross(departure.side)) return false;
+            case Departure::Kind::ThroughEdge: {
+                Side exit = departure.side;
+                if (!stride(exit) || (exit.valid() && !cross(exit))) return false;
                 break;
+            }
             case Departure::Kind::Outside:
                 if (enter_other_fan()) break;
                 if (const Side edge = detour(along(end_)); edge.valid()) {
@@ -153,6 +161,7 @@ bool March::has_arrived() const {
 bool March::finish() {
     const bool done = !path_->closed || !at_.valid() || at_ == first_ || march_home();
     if (!at_.valid()) close_outside();
+    flush_open();
     at_ = {};
     return done && within_limits();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/integrate/drift.hpp"
+#include "core/integrate/improve.hpp"
 #include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
@@ -61,9 +62,10 @@ struct MarchLimits {
 /// that for the cases in which rounding decides.
 class March {
   public:
-    /// `drift` is the request's, and knows what earlier shapes of it did.
+    /// `drift` is the request's, and knows what earlier shapes of it did. `improver`, where there
+    /// is one, swaps at once what can be told at once; it sees the rest by `changed`.
     March(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-          Drift& drift);
+          Drift& drift, Improver* improver);
 
     /// Begins a path at its first point; `index` is the path's in its shape. The path must live
     /// until `finish`. Costs a location. False: stopped, see `error`.
@@ -80,13 +82,15 @@ class March {
     std::optional<Error>& error() { return error_; }
     /// How far any vertex may be, in plan, off the edge between facets that it was put on.
     double largest_bend() const;
-    /// Vertices whose surroundings changed since the last call; the march forgets them.
+    /// Vertices whose surroundings changed, but for those where the improver has seen to that; the
+    /// caller clears them once it has. Complete once the path is finished.
     std::vector<VertexId>& changed() { return changed_; }
     /// Elevations that the paths bring, in order; the mesh has those of its surface until they are
     /// set.
     const std::vector<OwnElevation>& own_elevations() const { return own_elevations_; }
 
   private:
+    struct Passing;
     // march.cpp
     void set_snap(double snap);
     void set_segment(Point2 start, Point2 end);
@@ -141,6 +145,23 @@ class March {
     void measure(VertexId v);
     bool is_beside_segment(Point2 p) const;
 
+    // stride.cpp
+    bool stride(Side& exit);
+    bool is_plain(const Passing& here) const;
+    bool find_plain_split(const Passing& here, Point2& p) const;
+    bool is_plainly_split(const Passing& here, Point2 p) const;
+    Side pass(const Passing& here, Point2 p);
+    /// What a plain step leaves to improve.
+    struct Seam {
+        Side free;                 ///< an edge that may be better swapped, before the step
+        bool is_next = false;      ///< that is the next side, not the previous
+        bool is_simple = false;    ///< all is known: no other edge there may swap
+        bool covers_open = false;  ///< among them what the last step left open
+    };
+    Seam seam_of(const Passing& here) const;
+    void close(const Seam& seam, const Surgery::Passage& passage);
+    void flush_open();
+
     // connect.cpp
     bool connect(VertexId t);
     bool is_passed(Point2 goal) const;
@@ -178,6 +199,7 @@ class March {
     const IntegrateOptions& options_;
     const MarchLimits& limits_;
     Drift& drift_;
+    Improver* improver_;
     double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
     double snap_;               ///< of this segment
     double near_;               ///< what is nearer is one: half of that, or the snap
@@ -188,6 +210,9 @@ class March {
     /// Of the reach: what rounding does to a position that was computed on an edge. Not added up.
     static constexpr double kUsualDrift = 0.1875;
 
+    /// Of a side's marks: constrained, locked, inside a facet.
+    static constexpr std::uint32_t kNotPlain = 0x1011U;
+
     const Path* path_ = nullptr;
     std::size_t path_index_ = 0;
     std::size_t from_ = 0;  ///< the input segment's points in the path
@@ -197,6 +222,10 @@ class March {
     VertexId at_;     ///< where the march stands; invalid: outside the mesh
     Point2 start_;    ///< the input segment
     Point2 end_;
+    Point2 ahead_;   ///< where the path goes on from its end
+    VertexId open_;  ///< the end of a plain step, all around it improved but for two triangles
+    TriangleId open_entered_;
+    TriangleId open_other_;
     double length_ = 0.0;
     std::uint64_t steps_ = 0;
     std::uint64_t asked_ = 0;  ///< how often the limits were looked at

@@ -21,8 +21,9 @@ class ShapeIntegration {
           watch_(watch),
           times_(times),
           drift_(drift),
-          march_(surgery, options, limits, drift),
-          improver_(surgery) {}
+          improver_(surgery),
+          march_(surgery, options, limits, drift,
+                 options.improve == Improve::Strict ? &improver_ : nullptr) {}
 
     /// False: stopped, see `error`.
     bool run(const Shape& shape);
@@ -47,8 +48,8 @@ class ShapeIntegration {
     Stopwatch& watch_;
     StageTimes& times_;
     Drift& drift_;
-    March march_;
     Improver improver_;
+    March march_;
     std::vector<VertexId> changed_;
     std::vector<VertexId> set_vertices_;
     double max_elevation_change_ = 0.0;

@@ -185,6 +185,7 @@ bool March::can_bend(Side edge, Point2 p) const {
 
 /// Stands on a vertex, which is the chain's next.
 void March::stand_on(VertexId v) {
+    flush_open();
     at_ = v;
     tally_.chains.back().vertices.push_back(v);
     measure(v);

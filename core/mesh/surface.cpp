@@ -26,8 +26,12 @@ double elevation_in(const Tin& tin, TriangleId t, Point2 p) {
 }
 
 double elevation_on(const Tin& tin, Side s, Point2 p) {
-    const Tin::Vertex* a = &tin.vertex(tin.origin(s));
-    const Tin::Vertex* b = &tin.vertex(tin.destination(s));
+    return elevation_between(tin.vertex(tin.origin(s)), tin.vertex(tin.destination(s)), p);
+}
+
+double elevation_between(const Tin::Vertex& from, const Tin::Vertex& to, Point2 p) {
+    const Tin::Vertex* a = &from;
+    const Tin::Vertex* b = &to;
     const double dx = b->x - a->x;
     const double dy = b->y - a->y;
     double from_a = (p.x - a->x) * dx + (p.y - a->y) * dy;

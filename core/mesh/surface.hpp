@@ -16,6 +16,7 @@ double elevation_in(const Tin& tin, TriangleId t, Point2 p);
 /// Elevation on the edge at the position of it that is nearest to p, by linear interpolation from
 /// the nearer end; the same from either side and direction.
 double elevation_on(const Tin& tin, Side s, Point2 p);
+double elevation_between(const Tin::Vertex& from, const Tin::Vertex& to, Point2 p);
 
 /// What a triangle in 3D is like. The order of the corners shows in the last digits alone.
 class TriangleShape {

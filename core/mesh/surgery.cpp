@@ -21,9 +21,11 @@ std::uint32_t side_marks(std::uint32_t marks, unsigned from, unsigned to) {
     return ((marks >> from) & Surgery::kSideBits) << to;
 }
 
+constexpr std::uint32_t kInsideBit = 1U << Surgery::kInsideShift;
+
 /// The marks of side `i` alone, inside a facet.
 std::uint32_t inside(unsigned i) {
-    return 1U << (Surgery::kInsideShift + i);
+    return kInsideBit << i;
 }
 
 void set_side_marks(std::uint32_t& marks, unsigned side, std::uint32_t moved) {
@@ -186,6 +188,71 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     return p;
 }
 
+//            c                         T (a, b, c) keeps its slot: (a, p, c)
+//           /|\                        N new: (p, b, c)
+//          / | \                       .
+//         /  |  \                      past a:  M new: (p, a, d), U keeps its slot: (b, p, d)
+//        / T | N \                     past b:  M new: (b, p, d), U keeps its slot: (p, a, d)
+//       a ---p--- b    s = a -> b      .
+//        \   |   /                     c-p is the way: constrained
+//         \  |  /                      p-d unmarked
+//          \ | /                       .
+//            d
+Surgery::Passage Surgery::split_and_pass(Side s, Point3 point, bool past_a, bool lock) {
+    const TriangleId t = s.triangle();
+    const unsigned i = s.index();
+    const unsigned i1 = next_of(i);
+    Tin::Triangle& T = edit(t);
+    const Side across = T.twins[i];
+    const TriangleId u = across.triangle();
+    const unsigned j = across.index();
+    const unsigned j1 = next_of(j);
+    const unsigned j2 = previous_of(j);
+    Tin::Triangle& U = edit(u);
+    const VertexId a = T.vertices[i];
+    const VertexId b = T.vertices[i1];
+    const VertexId c = T.vertices[previous_of(i)];
+    const VertexId d = U.vertices[j2];
+    const TriangleId N = next_triangle();
+    const TriangleId M{N.value + 1};
+    const FacetId facet = T.facet, facet_u = U.facet;
+    const Side outer_bc = T.twins[i1];
+    const std::uint32_t marks_bc = side_marks(T.marks, i1, 1);
+    const std::uint32_t way = kInsideBit | 1U | (1U << kFreshShift) | (lock ? 1U << 4 : 0U);
+
+    const VertexId p = append(point, t);
+    T.vertices[i1] = p;
+    T.twins[i1] = {N, 2};
+    set_side_marks(T.marks, i1, way << i1);
+    if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
+    if (past_a) {
+        const Side outer_ad = U.twins[j1];
+        const std::uint32_t marks_ad = side_marks(U.marks, j1, 1);
+        T.twins[i] = {M, 0};
+        U.vertices[j1] = p;
+        U.twins[j] = {N, 0};
+        U.twins[j1] = {M, 2};
+        set_side_marks(U.marks, j1, inside(j1));
+        if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
+        link(outer_bc, {N, 1});
+        link(outer_ad, {M, 1});
+        append({{p, b, c}, {across, outer_bc, Side{t, i1}}, facet, marks_bc | way << 2});
+        append({{p, a, d}, {s, outer_ad, Side{u, j1}}, facet_u, marks_ad | inside(2)});
+    } else {
+        const Side outer_db = U.twins[j2];
+        const std::uint32_t marks_db = side_marks(U.marks, j2, 2);
+        U.vertices[j] = p;
+        U.twins[j2] = {M, 1};
+        set_side_marks(U.marks, j2, inside(j2));
+        if (tin_.vertex(b).triangle == u) edit(b).triangle = M;
+        link(outer_bc, {N, 1});
+        link(outer_db, {M, 2});
+        append({{p, b, c}, {Side{M, 0}, outer_bc, Side{t, i1}}, facet, marks_bc | way << 2});
+        append({{b, p, d}, {Side{N, 0}, Side{u, j2}, outer_db}, facet_u, marks_db | inside(1)});
+    }
+    return {p, M, u};
+}
+
 //          c                   c
 //         / \                 /|\          T (a, b, c) becomes (a, d, c)
 //        /   \               / | \         U (b, a, d) becomes (b, c, d)
@@ -230,6 +297,7 @@ Side Surgery::swap_edge(Side s) {
     link(outer_bc, {u, j});
     if (tin_.vertex(b).triangle == t) edit(b).triangle = u;
     if (tin_.vertex(a).triangle == u) edit(a).triangle = t;
+    if (!is_inside) renew_inside(t, u);
     return {t, i1};
 }
 
@@ -252,10 +320,7 @@ void Surgery::absorb_apex(Side s) {
         tin_.constraint_splits_.push_back({tin_.origin(s), tin_.destination(s), tin_.apex(s)});
     swap_edge(s);  // T (a, d, c): c -> a is side i + 2; U (b, c, d): b -> c is side j
     edit(t).facet = facet;
-    for (unsigned k = 0; k < 3; ++k) {
-        renew_inside({t, k});
-        renew_inside({u, k});
-    }
+    renew_inside(t, u);
     const auto add_marks = [this, marks, i](Side side) {
         const std::uint32_t moved = marks & ~inside(i);
         edit(side.triangle()).marks |= side_marks(moved, i, side.index());
@@ -301,19 +366,24 @@ void Surgery::raise_facet_error(double error) {
 
 FacetId Surgery::give_fresh_facet(TriangleId t) {
     edit(t).facet = {tin_.next_facet_++};
-    for (unsigned i = 0; i < 3; ++i)
-        renew_inside({t, i});
+    renew_inside(t, t);
     return tin_.facet(t);
 }
 
-/// After a facet changed: marks the edge on both sides as inside a facet, or not.
-void Surgery::renew_inside(Side s) {
-    const Side across = tin_.twin(s);
-    const bool is_inside =
-        across.valid() && tin_.facet(s.triangle()) == tin_.facet(across.triangle());
-    if (is_inside != tin_.separates_facets(s)) return;
-    edit(s.triangle()).marks ^= inside(s.index());
-    if (across.valid()) edit(across.triangle()).marks ^= inside(across.index());
+/// After triangles came to other facets or other places: marks their edges on both sides as inside
+/// a facet, or not.
+void Surgery::renew_inside(TriangleId t, TriangleId u) {
+    for (const TriangleId triangle : {t, u}) {
+        for (unsigned i = 0; i < 3; ++i) {
+            const Side side(triangle, i);
+            const Side across = tin_.twin(side);
+            const bool is_inside =
+                across.valid() && tin_.facet(triangle) == tin_.facet(across.triangle());
+            if (is_inside != tin_.separates_facets(side)) continue;
+            edit(triangle).marks ^= inside(i);
+            if (across.valid()) edit(across.triangle()).marks ^= inside(across.index());
+        }
+    }
 }
 
 UndoRecord Surgery::commit() {

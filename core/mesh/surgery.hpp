@@ -26,6 +26,18 @@ class Surgery {
     /// Splits an edge, and the triangle or triangles beside it, at a point strictly between its
     /// ends. Both halves keep every mark. New slots: 1 vertex, 2 triangles (boundary: 1).
     VertexId split_edge(Side s, Point3 p);
+    /// What `split_and_pass` made.
+    struct Passage {
+        VertexId vertex;     ///< p
+        TriangleId entered;  ///< the half across that the way enters
+        TriangleId other;    ///< the other half across
+    };
+    /// Like `split_edge` for a way that comes from the apex c of `s` and goes on across it: the new
+    /// edge c-p is a fresh constraint, locked where asked. Of the halves across, which share the
+    /// apex d, the one that the way enters gets the new slot, so that no triangle is touched that
+    /// the way does not meet; `past_a`: it is the half beside the origin of `s`.
+    /// Requires: the edge is between facets, neither constrained nor locked nor on the boundary.
+    Passage split_and_pass(Side s, Point3 p, bool past_a, bool lock);
     /// Exchanges the diagonal of the two triangles beside the edge. Requires: not a boundary edge.
     /// The triangle of `s` and its twin keep their slots. Returns a side of the new edge, whose
     /// triangle holds the old origin of `s`.
@@ -73,7 +85,7 @@ class Surgery {
     Tin::Triangle& edit(TriangleId t);
     Tin::Vertex& edit(VertexId v);
     void link(Side s, Side to);
-    void renew_inside(Side s);
+    void renew_inside(TriangleId t, TriangleId u);
     VertexId append(Point3 p, TriangleId t);
     TriangleId next_triangle() const;
     void append(const Tin::Triangle& t);

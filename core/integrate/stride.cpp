@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// The march's plain step, which is almost all of them: through an edge between two facets that is
+// far from everything that rounding could confuse it with. It does what `cross_facet_edge` does
+// there, with each vertex and triangle looked at once.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/integrate/march.hpp"
+#include "core/mesh/surface.hpp"
+#include "core/predicates/orientation.hpp"
+
+namespace tinsmith::core {
+
+using enum Orientation;
+
+/// An edge that the way is about to pass, and what is around it. References hold until the split.
+//
+//             b (left)         the march stands on c; `exit` is a -> b in the triangle (a, b, c),
+//            /|\               a strictly right of the way to the segment's end, b strictly left;
+//           / | \              `across` is its twin in the triangle (b, a, d)
+//       c  /  |  \  d
+//          \  |  /  -> end_
+//           \ | /
+//            \|/
+//             a (right)
+struct March::Passing {
+    Side exit;
+    Side across;
+    const Tin::Triangle& behind;
+    VertexId a_id, b_id;
+    const Tin::Vertex &a, &b, &c, &d;
+    AreaEstimate of_a, of_b;  ///< with the input segment: a's is negative, b's positive
+    double longest;           ///< no more than the edge's length
+    double manhattan;         ///< no less
+};
+
+namespace {
+
+bool is_below(const Tin::Vertex& p, const Tin::Vertex& q) {
+    return p.x != q.x ? p.x < q.x : p.y < q.y;
+}
+
+/// How many of the triangle's sides are inside a facet.
+int sides_inside(const Tin::Triangle& t) {
+    return std::popcount((t.marks >> Surgery::kInsideShift) & 7U);
+}
+
+}  // namespace
+
+/// Passes plain edges from `exit` on, whose triangle has the vertex where the march stands for its
+/// apex. Afterwards `exit` is the edge that is not plain, with the march standing across from it;
+/// or invalid, and where the march stands the way on has to be looked for. False: stopped, see
+/// `error`.
+bool March::stride(Side& exit) {
+    if (options_.snap > 0.0 || !path_->elevations.empty()) return true;
+    while (exit.valid()) {
+        const Tin::Triangle& behind = tin_.triangle(exit.triangle());
+        const unsigned i = exit.index();
+        const Side across = behind.twins[i];
+        if (((behind.marks >> i) & kNotPlain) != 0 || !across.valid()) return true;
+        const VertexId a = behind.vertices[i], b = behind.vertices[Side::next_of(i)];
+        const Tin::Vertex& from = tin_.vertex(a);
+        const Tin::Vertex& to = tin_.vertex(b);
+        const double dx = std::fabs(to.x - from.x), dy = std::fabs(to.y - from.y);
+        const Passing here{exit,
+                           across,
+                           behind,
+                           a,
+                           b,
+                           from,
+                           to,
+                           tin_.vertex(at_),
+                           tin_.vertex(tin_.apex(across)),
+                           estimate_doubled_area(start_, end_, from.plan()),
+                           estimate_doubled_area(start_, end_, to.plan()),
+                           std::max(dx, dy),
+                           dx + dy};
+        Point2 p;
+        if (!is_plain(here) || !find_plain_split(here, p) || !is_plainly_split(here, p))
+            return true;
+        if (!within_budget()) return false;
+        exit = pass(here, p);
+    }
+    return true;
+}
+
+/// Whether neither end of the edge is near the input segment, nor the edge near where the march
+/// stands.
+bool March::is_plain(const Passing& here) const {
+    const double reach = reach_of_rounding_ * length_;
+    if (!(here.of_a.value < -(reach + here.of_a.error) &&
+          here.of_b.value > reach + here.of_b.error))
+        return false;
+    const AreaEstimate apex = estimate_doubled_area(here.a.plan(), here.b.plan(), here.c.plan());
+    return apex.value > reach_of_rounding_ * here.manhattan + apex.error;
+}
+
+/// The segment's end, where that is plainly on the edge; where it is plainly beyond, the point in
+/// which the input segment crosses the edge, as `crossing_of` has it. False: neither is plain.
+bool March::find_plain_split(const Passing& here, Point2& p) const {
+    const Tin::Vertex* a = &here.a;
+    const Tin::Vertex* b = &here.b;
+    const AreaEstimate end = estimate_doubled_area(a->plan(), b->plan(), end_);
+    if (!(end.value < -(reach_of_rounding_ * here.manhattan + end.error))) {
+        // Both ends of the edge are farther than that from the segment: between them.
+        p = end_;
+        return std::fabs(end.value) + end.error < reach_of_rounding_ * 0.499 * here.longest;
+    }
+    double to_a = -here.of_a.value;
+    double to_b = here.of_b.value;
+    if (!((here.of_a.error + here.of_b.error) * here.longest <=
+          reach_of_rounding_ / 16.0 * (to_a + to_b)))
+        return false;
+    if (to_b < to_a || (to_a == to_b && is_below(*b, *a))) {
+        std::swap(a, b);
+        std::swap(to_a, to_b);
+    }
+    const double share = to_a / (to_a + to_b);
+    p = {a->x + (b->x - a->x) * share, a->y + (b->y - a->y) * share};
+    p = {std::clamp(p.x, std::min(a->x, b->x), std::max(a->x, b->x)),
+         std::clamp(p.y, std::min(a->y, b->y), std::max(a->y, b->y))};
+    const double at = along(p);
+    return at > along(here.c.plan()) && at <= along(end_);
+}
+
+/// Whether the split leaves all triangles strictly positive and bends the edge no more than the
+/// rounding of one position.
+bool March::is_plainly_split(const Passing& here, Point2 p) const {
+    const Point2 a = here.a.plan(), b = here.b.plan(), c = here.c.plan(), d = here.d.plan();
+    if (!is_left(a, p, c) || !is_left(p, b, c) || !is_left(b, p, d) || !is_left(p, a, d))
+        return false;
+    if (drift_.largest_bend() > 0.0 &&
+        (drift_.bend_of(here.a_id) > 0.0 || drift_.bend_of(here.b_id) > 0.0))
+        return false;
+    const AreaEstimate bent = estimate_doubled_area(a, b, p);
+    return std::fabs(bent.value) + bent.error <= kUsualDrift * reach_of_rounding_ * here.longest;
+}
+
+/// Splits the edge at p, goes there, and says by which edge the way goes on; invalid where that has
+/// to be looked for.
+Side March::pass(const Passing& here, Point2 p) {
+    const Point2 a = here.a.plan(), b = here.b.plan(), d = here.d.plan();
+    const bool is_end = p == end_;
+    const Orientation turn = orientation(p, is_end ? ahead_ : end_, d);
+    const bool past_a = turn != Clockwise;
+    const bool goes_on =
+        !is_end && (past_a ? turn == CounterClockwise && orientation(p, end_, a) == Clockwise
+                           : orientation(p, end_, b) == CounterClockwise);
+    const Seam seam = seam_of(here);
+    if (open_ == at_ && !seam.covers_open) flush_open();
+    const std::uint32_t below =
+        std::max(drift_.nesting_of(here.a_id), drift_.nesting_of(here.b_id));
+    const double z = elevation_between(here.a, here.b, p);
+    const Surgery::Passage passage =
+        surgery_.split_and_pass(here.exit, {p.x, p.y, z}, past_a, options_.lock);
+    const VertexId v = passage.vertex;
+    drift_.nest(v, below);
+    if (!is_end) {
+        ++tally_.crossings;
+        measure(v);
+    }
+    tally_.chains.back().vertices.push_back(v);
+    at_ = v;
+    close(seam, passage);
+    const Side way_on(passage.entered, past_a ? 0U : 1U);
+    way_on_ = way_on;
+    return goes_on ? way_on.next() : Side{};
+}
+
+/// What the split leaves to improve, which is known while the triangles are at hand: where facets
+/// were whole before the way cut through them, one edge of each, that is looked at as soon as the
+/// way is out of the facet.
+March::Seam March::seam_of(const Passing& here) const {
+    Seam seam;
+    if (improver_ == nullptr) return seam;
+    const Side next = here.exit.next(), previous = here.exit.previous();
+    const bool next_is_free = tin_.is_free(next), previous_is_free = tin_.is_free(previous);
+    seam.covers_open = here.exit.triangle() == open_entered_ || here.exit.triangle() == open_other_;
+    seam.is_simple = !(next_is_free && previous_is_free) &&
+                     sides_inside(tin_.triangle(here.across.triangle())) == 0;
+    if (!seam.is_simple || !(next_is_free || previous_is_free)) return seam;
+    const Side free = next_is_free ? next : previous;
+    seam.is_simple = sides_inside(tin_.triangle(tin_.twin(free).triangle())) == 1;
+    seam.free = free;
+    seam.is_next = next_is_free;
+    return seam;
+}
+
+/// Improves what the split left, or leaves it to the improver.
+void March::close(const Seam& seam, const Surgery::Passage& passage) {
+    open_ = {};
+    if (!seam.is_simple) {
+        changed_.push_back(at_);
+        return;
+    }
+    open_ = at_;
+    open_entered_ = passage.entered;
+    open_other_ = passage.other;
+    if (!seam.free.valid()) return;
+    // The split moved the side that begins where it was to the new triangle behind the edge.
+    const Side next(TriangleId{passage.entered.value - 1}, 1);
+    improver_->improve(seam.is_next ? next : seam.free);
+}
+
+/// Leaves the vertex to the improver after all: the way does not go on from it by a plain step.
+void March::flush_open() {
+    if (open_.valid()) changed_.push_back(open_);
+    open_ = {};
+}
+
+}  // namespace tinsmith::core
