@@ -159,7 +159,7 @@ class March {
         bool covers_open = false;  ///< among them what the last step left open
     };
     Seam seam_of(const Passing& here) const;
-    void close(const Seam& seam, const Surgery::Passage& passage);
+    void close(const Seam& seam, TriangleId other, TriangleId entered);
     void flush_open();
 
     // connect.cpp

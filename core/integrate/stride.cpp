@@ -41,9 +41,9 @@ bool is_below(const Tin::Vertex& p, const Tin::Vertex& q) {
     return p.x != q.x ? p.x < q.x : p.y < q.y;
 }
 
-/// How many of the triangle's sides are inside a facet.
-int sides_inside(const Tin::Triangle& t) {
-    return std::popcount((t.marks >> Surgery::kInsideShift) & 7U);
+/// The marks of the triangle's sides that are inside a facet.
+std::uint32_t sides_inside(const Tin::Triangle& t) {
+    return t.marks & (7U << Surgery::kInsideShift);
 }
 
 }  // namespace
@@ -152,9 +152,10 @@ Side March::pass(const Passing& here, Point2 p) {
     const std::uint32_t below =
         std::max(drift_.nesting_of(here.a_id), drift_.nesting_of(here.b_id));
     const double z = elevation_between(here.a, here.b, p);
-    const Surgery::Passage passage =
-        surgery_.split_and_pass(here.exit, {p.x, p.y, z}, past_a, options_.lock);
-    const VertexId v = passage.vertex;
+    const TriangleId other = here.across.triangle();
+    const Point3 point{p.x, p.y, z};
+    const VertexId v = surgery_.split_and_pass(here.exit, point, past_a, options_.lock);
+    const TriangleId entered{static_cast<std::uint32_t>(tin_.triangle_count() - 1)};
     drift_.nest(v, below);
     if (!is_end) {
         ++tally_.crossings;
@@ -162,8 +163,8 @@ Side March::pass(const Passing& here, Point2 p) {
     }
     tally_.chains.back().vertices.push_back(v);
     at_ = v;
-    close(seam, passage);
-    const Side way_on(passage.entered, past_a ? 0U : 1U);
+    close(seam, other, entered);
+    const Side way_on(entered, past_a ? 0U : 1U);
     way_on_ = way_on;
     return goes_on ? way_on.next() : Side{};
 }
@@ -181,25 +182,25 @@ March::Seam March::seam_of(const Passing& here) const {
                      sides_inside(tin_.triangle(here.across.triangle())) == 0;
     if (!seam.is_simple || !(next_is_free || previous_is_free)) return seam;
     const Side free = next_is_free ? next : previous;
-    seam.is_simple = sides_inside(tin_.triangle(tin_.twin(free).triangle())) == 1;
+    seam.is_simple = std::has_single_bit(sides_inside(tin_.triangle(tin_.twin(free).triangle())));
     seam.free = free;
     seam.is_next = next_is_free;
     return seam;
 }
 
 /// Improves what the split left, or leaves it to the improver.
-void March::close(const Seam& seam, const Surgery::Passage& passage) {
+void March::close(const Seam& seam, TriangleId other, TriangleId entered) {
     open_ = {};
     if (!seam.is_simple) {
         changed_.push_back(at_);
         return;
     }
     open_ = at_;
-    open_entered_ = passage.entered;
-    open_other_ = passage.other;
+    open_entered_ = entered;
+    open_other_ = other;
     if (!seam.free.valid()) return;
     // The split moved the side that begins where it was to the new triangle behind the edge.
-    const Side next(TriangleId{passage.entered.value - 1}, 1);
+    const Side next(TriangleId{entered.value - 1}, 1);
     improver_->improve(seam.is_next ? next : seam.free);
 }
 

@@ -69,9 +69,13 @@ inline void Surgery::link(Side s, Side to) {
     if (s.valid()) edit(s.triangle()).twins[s.index()] = to;
 }
 
-inline VertexId Surgery::append(Point3 p, TriangleId t) {
+inline VertexId Surgery::append(const Point3& p, TriangleId t) {
     const VertexId id{static_cast<std::uint32_t>(tin_.vertices_.size())};
-    tin_.vertices_.push_back({p.x, p.y, p.z, t});
+    Tin::Vertex& vertex = tin_.vertices_.emplace_back();
+    vertex.x = p.x;
+    vertex.y = p.y;
+    vertex.z = p.z;
+    vertex.triangle = t;
     return id;
 }
 
@@ -80,10 +84,19 @@ inline TriangleId Surgery::next_triangle() const {
     return {static_cast<std::uint32_t>(tin_.triangles_.size())};
 }
 
-/// References to triangles are void afterwards.
-inline void Surgery::append(const Tin::Triangle& t) {
-    tin_.triangles_.push_back(t);
-    tin_.triangles_.back().marks |= kLoggedBit;
+/// Written part by part where it stays: one that is built aside and copied is read back before its
+/// parts have arrived. References to triangles are void afterwards.
+inline void Surgery::append(VertexId v0, VertexId v1, VertexId v2, Side s0, Side s1, Side s2,
+                            FacetId facet, std::uint32_t marks) {
+    Tin::Triangle& triangle = tin_.triangles_.emplace_back();
+    triangle.vertices[0] = v0;
+    triangle.vertices[1] = v1;
+    triangle.vertices[2] = v2;
+    triangle.twins[0] = s0;
+    triangle.twins[1] = s1;
+    triangle.twins[2] = s2;
+    triangle.facet = facet;
+    triangle.marks = marks | kLoggedBit;
 }
 
 //            v2                        T  keeps its slot: (v0, v1, p)
@@ -95,7 +108,7 @@ inline void Surgery::append(const Tin::Triangle& t) {
 //      / /   T   \ \                   .
 //     v0 ---------- v1
 //            n0
-VertexId Surgery::split_triangle(TriangleId t, Point3 point) {
+VertexId Surgery::split_triangle(TriangleId t, const Point3& point) {
     Tin::Triangle& T = edit(t);
     const auto [v0, v1, v2] = T.vertices;
     const Side n1 = T.twins[1];
@@ -112,8 +125,8 @@ VertexId Surgery::split_triangle(TriangleId t, Point3 point) {
     const TriangleId B{A.value + 1};
     T.twins[1] = {A, 2};
     T.twins[2] = {B, 1};
-    append({{v1, v2, p}, {n1, {B, 2}, {t, 1}}, facet, side_marks(marks, 1, 0) | within});
-    append({{v2, v0, p}, {n2, {t, 2}, {A, 1}}, facet, side_marks(marks, 2, 0) | within});
+    append(v1, v2, p, n1, {B, 2}, {t, 1}, facet, side_marks(marks, 1, 0) | within);
+    append(v2, v0, p, n2, {t, 2}, {A, 1}, facet, side_marks(marks, 2, 0) | within);
     link(n1, {A, 0});
     link(n2, {B, 0});
     if (tin_.vertex(v2).triangle == t) edit(v2).triangle = A;
@@ -131,7 +144,7 @@ VertexId Surgery::split_triangle(TriangleId t, Point3 point) {
 //          \ | /                       on the boundary there is no U and no M
 //           \|/
 //            d
-VertexId Surgery::split_edge(Side s, Point3 point) {
+VertexId Surgery::split_edge(Side s, const Point3& point) {
     const TriangleId t = s.triangle();
     const unsigned i = s.index();
     const unsigned i1 = next_of(i);
@@ -155,7 +168,7 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
 
     if (!across.valid()) {
-        append({{p, b, c}, {Side{}, outer_bc, Side{t, i1}}, facet, marks_n});
+        append(p, b, c, {}, outer_bc, {t, i1}, facet, marks_n);
         link(outer_bc, {N, 1});
         tin_.boundary_.add_split(a, tin_.plan(a), p, point.plan(), tin_.plan(b));
         return p;
@@ -179,11 +192,9 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
     U.twins[j] = {N, 0};
     U.twins[j1] = {M, 2};
     link(outer_ad, {M, 1});
-    append({{p, b, c}, {across, outer_bc, {t, i1}}, facet, marks_n});
-    append({{p, a, d},
-            {s, outer_ad, {u, j1}},
-            facet_u,
-            side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1) | inside(2)});
+    append(p, b, c, across, outer_bc, {t, i1}, facet, marks_n);
+    append(p, a, d, s, outer_ad, {u, j1}, facet_u,
+           side_marks(marks_u, j, 0) | side_marks(marks_u, j1, 1) | inside(2));
     if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
     return p;
 }
@@ -198,7 +209,7 @@ VertexId Surgery::split_edge(Side s, Point3 point) {
 //         \  |  /                      p-d unmarked
 //          \ | /                       .
 //            d
-Surgery::Passage Surgery::split_and_pass(Side s, Point3 point, bool past_a, bool lock) {
+VertexId Surgery::split_and_pass(Side s, const Point3& point, bool past_a, bool lock) {
     const TriangleId t = s.triangle();
     const unsigned i = s.index();
     const unsigned i1 = next_of(i);
@@ -236,8 +247,8 @@ Surgery::Passage Surgery::split_and_pass(Side s, Point3 point, bool past_a, bool
         if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
         link(outer_bc, {N, 1});
         link(outer_ad, {M, 1});
-        append({{p, b, c}, {across, outer_bc, Side{t, i1}}, facet, marks_bc | way << 2});
-        append({{p, a, d}, {s, outer_ad, Side{u, j1}}, facet_u, marks_ad | inside(2)});
+        append(p, b, c, across, outer_bc, {t, i1}, facet, marks_bc | way << 2);
+        append(p, a, d, s, outer_ad, {u, j1}, facet_u, marks_ad | inside(2));
     } else {
         const Side outer_db = U.twins[j2];
         const std::uint32_t marks_db = side_marks(U.marks, j2, 2);
@@ -247,10 +258,10 @@ Surgery::Passage Surgery::split_and_pass(Side s, Point3 point, bool past_a, bool
         if (tin_.vertex(b).triangle == u) edit(b).triangle = M;
         link(outer_bc, {N, 1});
         link(outer_db, {M, 2});
-        append({{p, b, c}, {Side{M, 0}, outer_bc, Side{t, i1}}, facet, marks_bc | way << 2});
-        append({{b, p, d}, {Side{N, 0}, Side{u, j2}, outer_db}, facet_u, marks_db | inside(1)});
+        append(p, b, c, {M, 0}, outer_bc, {t, i1}, facet, marks_bc | way << 2);
+        append(b, p, d, {N, 0}, {u, j2}, outer_db, facet_u, marks_db | inside(1));
     }
-    return {p, M, u};
+    return p;
 }
 
 //          c                   c
@@ -370,8 +381,8 @@ FacetId Surgery::give_fresh_facet(TriangleId t) {
     return tin_.facet(t);
 }
 
-/// After triangles came to other facets or other places: marks their edges on both sides as inside
-/// a facet, or not.
+/// After triangles came to other facets or other places: marks their edges on both sides as
+/// inside a facet, or not.
 void Surgery::renew_inside(TriangleId t, TriangleId u) {
     for (const TriangleId triangle : {t, u}) {
         for (unsigned i = 0; i < 3; ++i) {

@@ -22,22 +22,18 @@ class Surgery {
     const UndoRecord& record() const { return record_; }
 
     /// Splits a triangle in three at a point strictly inside. New slots: 1 vertex, 2 triangles.
-    VertexId split_triangle(TriangleId t, Point3 p);
+    VertexId split_triangle(TriangleId t, const Point3& p);
     /// Splits an edge, and the triangle or triangles beside it, at a point strictly between its
     /// ends. Both halves keep every mark. New slots: 1 vertex, 2 triangles (boundary: 1).
-    VertexId split_edge(Side s, Point3 p);
-    /// What `split_and_pass` made.
-    struct Passage {
-        VertexId vertex;     ///< p
-        TriangleId entered;  ///< the half across that the way enters
-        TriangleId other;    ///< the other half across
-    };
+    VertexId split_edge(Side s, const Point3& p);
     /// Like `split_edge` for a way that comes from the apex c of `s` and goes on across it: the new
     /// edge c-p is a fresh constraint, locked where asked. Of the halves across, which share the
     /// apex d, the one that the way enters gets the new slot, so that no triangle is touched that
     /// the way does not meet; `past_a`: it is the half beside the origin of `s`.
     /// Requires: the edge is between facets, neither constrained nor locked nor on the boundary.
-    Passage split_and_pass(Side s, Point3 p, bool past_a, bool lock);
+    /// New slots: 1 vertex, the half behind beside the destination of `s`, and the half that the
+    /// way enters, in this order.
+    VertexId split_and_pass(Side s, const Point3& p, bool past_a, bool lock);
     /// Exchanges the diagonal of the two triangles beside the edge. Requires: not a boundary edge.
     /// The triangle of `s` and its twin keep their slots. Returns a side of the new edge, whose
     /// triangle holds the old origin of `s`.
@@ -86,9 +82,10 @@ class Surgery {
     Tin::Vertex& edit(VertexId v);
     void link(Side s, Side to);
     void renew_inside(TriangleId t, TriangleId u);
-    VertexId append(Point3 p, TriangleId t);
+    VertexId append(const Point3& p, TriangleId t);
     TriangleId next_triangle() const;
-    void append(const Tin::Triangle& t);
+    void append(VertexId v0, VertexId v1, VertexId v2, Side s0, Side s1, Side s2, FacetId facet,
+                std::uint32_t marks);
 
     Tin& tin_;
     UndoRecord record_;
