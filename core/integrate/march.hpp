@@ -147,6 +147,8 @@ class March {
 
     // stride.cpp
     bool stride(Side& exit);
+    void fetch(Side side) const;
+    void fetch_apex(Side side) const;
     bool is_plain(const Passing& here) const;
     bool find_plain_split(const Passing& here, Point2& p) const;
     bool is_plainly_split(const Passing& here, Point2 p) const;

@@ -48,6 +48,18 @@ std::uint32_t sides_inside(const Tin::Triangle& t) {
 
 }  // namespace
 
+/// Asks for the triangle across the side, which the way may go through next.
+inline void March::fetch(Side side) const {
+    if (const Side twin = tin_.twin(side); twin.valid())
+        __builtin_prefetch(&tin_.triangle(twin.triangle()));
+}
+
+/// Asks for the vertex that the triangle across the side has opposite.
+inline void March::fetch_apex(Side side) const {
+    if (const Side twin = tin_.twin(side); twin.valid())
+        __builtin_prefetch(&tin_.vertex(tin_.apex(twin)));
+}
+
 /// Passes plain edges from `exit` on, whose triangle has the vertex where the march stands for its
 /// apex. Afterwards `exit` is the edge that is not plain, with the march standing across from it;
 /// or invalid, and where the march stands the way on has to be looked for. False: stopped, see
@@ -59,6 +71,8 @@ bool March::stride(Side& exit) {
         const unsigned i = exit.index();
         const Side across = behind.twins[i];
         if (((behind.marks >> i) & kNotPlain) != 0 || !across.valid()) return true;
+        fetch(across.next());
+        fetch(across.previous());
         const VertexId a = behind.vertices[i], b = behind.vertices[Side::next_of(i)];
         const Tin::Vertex& from = tin_.vertex(a);
         const Tin::Vertex& to = tin_.vertex(b);
@@ -147,6 +161,8 @@ Side March::pass(const Passing& here, Point2 p) {
     const bool goes_on =
         !is_end && (past_a ? turn == CounterClockwise && orientation(p, end_, a) == Clockwise
                            : orientation(p, end_, b) == CounterClockwise);
+    if (const Side next = past_a ? here.across.next() : here.across.previous(); !is_end)
+        fetch_apex(next);
     const Seam seam = seam_of(here);
     if (open_ == at_ && !seam.covers_open) flush_open();
     const std::uint32_t below =
