@@ -73,6 +73,7 @@ bool March::advance(std::size_t to) {
     ++tally_.segments;
     set_segment(end_, path_->points[to]);
     ahead_ = path_->points[to + 1 < path_->points.size() ? to + 1 : 0];
+    fetch_path();
     bool done = march_to_end();
     // Where snapping led into a dead end, the rest of the segment goes straight.
     if (!done && snap_ > 0.0 && error_ &&

@@ -147,6 +147,7 @@ class March {
 
     // stride.cpp
     bool stride(Side& exit);
+    void fetch_path() const;
     void fetch(Side side) const;
     void fetch_apex(Side side) const;
     bool is_plain(const Passing& here) const;

@@ -60,6 +60,17 @@ inline void March::fetch_apex(Side side) const {
         __builtin_prefetch(&tin_.vertex(tin_.apex(twin)));
 }
 
+/// Asks, a few points ahead, for the triangles that the path will come to, and for their corners.
+void March::fetch_path() const {
+    const std::vector<Point2>& points = path_->points;
+    constexpr std::size_t kHint = 8, kTriangle = 5, kCorners = 3;
+    if (to_ + kHint >= points.size()) return;
+    __builtin_prefetch(tin_.hint_place(points[to_ + kHint]));
+    __builtin_prefetch(&tin_.triangle(tin_.hint(points[to_ + kTriangle])));
+    for (const VertexId v : tin_.triangle(tin_.hint(points[to_ + kCorners])).vertices)
+        __builtin_prefetch(&tin_.vertex(v));
+}
+
 /// Passes plain edges from `exit` on, whose triangle has the vertex where the march stands for its
 /// apex. Afterwards `exit` is the edge that is not plain, with the march standing across from it;
 /// or invalid, and where the march stands the way on has to be looked for. False: stopped, see
@@ -161,8 +172,7 @@ Side March::pass(const Passing& here, Point2 p) {
     const bool goes_on =
         !is_end && (past_a ? turn == CounterClockwise && orientation(p, end_, a) == Clockwise
                            : orientation(p, end_, b) == CounterClockwise);
-    if (const Side next = past_a ? here.across.next() : here.across.previous(); !is_end)
-        fetch_apex(next);
+    fetch_apex(past_a ? here.across.next() : here.across.previous());
     const Seam seam = seam_of(here);
     if (open_ == at_ && !seam.covers_open) flush_open();
     const std::uint32_t below =

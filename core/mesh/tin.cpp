@@ -14,7 +14,9 @@ Tin::Tin(const Tin& other)
       boundary_(other.boundary_),
       components_(other.components_),
       hints_(other.hints_),
-      hint_columns_(other.hint_columns_) {
+      hint_columns_(other.hint_columns_),
+      hints_per_x_(other.hints_per_x_),
+      hints_per_y_(other.hints_per_y_) {
     reserve_growth(other.vertices_.size(), other.triangles_.size());
     vertices_.assign(other.vertices_.begin(), other.vertices_.end());
     triangles_.assign(other.triangles_.begin(), other.triangles_.end());
@@ -28,17 +30,6 @@ Tin& Tin::operator=(const Tin& other) {
 void Tin::reserve_growth(std::size_t vertices, std::size_t triangles) {
     vertices_.reserve(vertices + vertices / 2);
     triangles_.reserve(triangles + triangles / 2);
-}
-
-TriangleId Tin::hint(Point2 p) const {
-    const auto cell = [this](double offset, double extent) {
-        const double columns = static_cast<double>(hint_columns_);
-        if (!(extent > 0.0) || !(offset > 0.0)) return std::size_t{0};
-        return static_cast<std::size_t>(std::min(columns - 1.0, offset / extent * columns));
-    };
-    const std::size_t column = cell(p.x - bounds_.min.x, bounds_.max.x - bounds_.min.x);
-    const std::size_t row = cell(p.y - bounds_.min.y, bounds_.max.y - bounds_.min.y);
-    return hints_[row * hint_columns_ + column];
 }
 
 MeshData Tin::to_data() const {

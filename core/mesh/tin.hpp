@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -126,7 +127,9 @@ class Tin {
     /// and none takes a triangle's slot to another, so they are what they were when it was built.
     const std::vector<TriangleId>& components() const { return components_; }
     /// A triangle somewhere near the position, to start a walk at. Cost: O(1).
-    TriangleId hint(Point2 p) const;
+    TriangleId hint(Point2 p) const { return hints_[hint_cell(p)]; }
+    /// Where `hint` is kept, for those who want to ask for it ahead of time.
+    const TriangleId* hint_place(Point2 p) const { return &hints_[hint_cell(p)]; }
 
     /// All constrained edges that were split since the mesh was built, oldest first: what leads
     /// from a chain as it was integrated to the edges that make it up now.
@@ -149,6 +152,14 @@ class Tin {
     /// Takes address space for half as many slots again; memory only where they are used.
     void reserve_growth(std::size_t vertices, std::size_t triangles);
 
+    std::size_t hint_cell(Point2 p) const {
+        const auto cell = [last = static_cast<double>(hint_columns_ - 1)](double place) {
+            return static_cast<std::size_t>(place > 0.0 ? std::min(last, place) : 0.0);
+        };
+        return cell((p.y - bounds_.min.y) * hints_per_y_) * hint_columns_ +
+               cell((p.x - bounds_.min.x) * hints_per_x_);
+    }
+
     friend class TinBuilder;
     friend class Surgery;
 
@@ -163,6 +174,8 @@ class Tin {
     std::vector<TriangleId> components_;
     std::vector<TriangleId> hints_;  ///< square grid over the bounds, row by row
     std::size_t hint_columns_ = 0;
+    double hints_per_x_ = 0.0;
+    double hints_per_y_ = 0.0;
 };
 
 static_assert(sizeof(Tin::Vertex) == 32 && sizeof(Tin::Triangle) == 32);
