@@ -59,6 +59,7 @@ std::pair<std::uint64_t, std::uint64_t> in_order(std::uint64_t one, std::uint64_
 }  // namespace
 
 void Improver::improve(const std::vector<VertexId>& vertices) {
+    unasked_ = 8 * vertices.size();
     for (const VertexId v : vertices)
         add_star(v);
     seen_ = tin_.vertex_count();
@@ -78,6 +79,7 @@ void Improver::improve(const std::vector<VertexId>& vertices) {
 }
 
 bool Improver::improve(Side s) {
+    unasked_ = 1;
     if (!may_swap(s) || !should_swap(s)) return false;
     surgery_.swap_edge(s);
     ++edges_swapped_;
@@ -108,7 +110,7 @@ inline bool Improver::may_swap(Side s) const {
 //     a --- b         angles at c and d sum to more than 180 degrees: when the sine of the sum is
 //       \ /           negative. Areas in plan stand for the sines, for all triangles of a facet
 //        d            are foreshortened alike.
-bool Improver::should_swap(Side s) const {
+bool Improver::should_swap(Side s) {
     const Side across = tin_.twin(s);
     const Quad quad{tin_.origin(s), tin_.destination(s), tin_.apex(s), tin_.apex(across)};
     const Tin::Vertex& a = tin_.vertex(quad.a);
@@ -122,7 +124,10 @@ bool Improver::should_swap(Side s) const {
     const double sine = at_c.value * below + at_d.value * above;
     const double size = at_c.size * below + at_d.size * above;
     // Areas are right to 2^-36. What is nearer to zero than that may be a circle: ask the angles.
-    return sine <= 0x1p-35 * size && is_better_swapped(quad);
+    if (sine > 0x1p-35 * size) return false;
+    if (sine > -0x1p-16 * size || unasked_ == 0) return is_better_swapped(quad);
+    --unasked_;
+    return is_left(a.plan(), d.plan(), c.plan()) && is_left(d.plan(), b.plan(), c.plan());
 }
 
 /// Whether the smallest angles of the two triangles, in order, get larger by the swap. In exact

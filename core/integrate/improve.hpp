@@ -26,8 +26,8 @@ class Improver {
     /// Improves around the vertices and as far as swaps reach from there. Requires: the vertices
     /// that are new since the last call, or since the beginning, are among them. Ends: each swap
     /// makes the sorted list of all triangles' smallest angles, as they are rounded for comparing,
-    /// larger in lexicographic order, and there are finitely many triangulations. Cost: linear in
-    /// the swaps.
+    /// larger in lexicographic order, but for so many as are not asked for that, and there are
+    /// finitely many triangulations. Cost: linear in the swaps.
     void improve(const std::vector<VertexId>& vertices);
 
     /// Swaps one edge if it is free to and better swapped. False: it stays.
@@ -44,13 +44,16 @@ class Improver {
     void add_star(VertexId v);
     void add_at(Side side, std::uint32_t newest);
     bool may_swap(Side s) const;
-    bool should_swap(Side s) const;
+    bool should_swap(Side s);
     bool is_better_swapped(const Quad& quad) const;
 
     Surgery& surgery_;
     const Tin& tin_;
     std::size_t seen_;  ///< vertices that were there when the last call ended
     std::vector<Side> pending_;
+    /// So many edges that plainly fail Delaunay's condition are swapped without asking the angles.
+    /// These would tell the same but for rounding, which must not keep swaps going for ever.
+    std::size_t unasked_ = 0;
     std::uint64_t edges_swapped_ = 0;
 };
 

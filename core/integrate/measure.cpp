@@ -65,16 +65,16 @@ class Lowest {
 class Glance {
   public:
     Glance(const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c) {
-        const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
-        const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-        const double nx = uy * vz - uz * vy;
-        const double ny = uz * vx - ux * vz;
-        const double nz = ux * vy - uy * vx;
-        level_squared_ = nx * nx + ny * ny;
-        upright_squared_ = nz * nz;
+        const Pair origin = plan_of(a);
+        const Pair u = plan_of(b) - origin, v = plan_of(c) - origin;
+        const double uz = b.z - a.z, vz = c.z - a.z;
+        const Pair level = u * vz - v * uz;  // turned by a right angle
+        const Pair cross = u * Pair{v[1], v[0]};
+        const double upright = cross[0] - cross[1];
+        level_squared_ = sum_of(level * level);
+        upright_squared_ = upright * upright;
         // Half the sum of the three squared edges: no less than the mean of the two longest.
-        const double half = (ux * ux + uy * uy + uz * uz) + (vx * vx + vy * vy + vz * vz) -
-                            (ux * vx + uy * vy + uz * vz);
+        const double half = sum_of(u * u + v * v - u * v) + (uz * uz + vz * vz - uz * vz);
         longest_squared_ = half * half;
     }
 
@@ -90,6 +90,11 @@ class Glance {
     }
 
   private:
+    /// Two doubles in one register: east and north take the same steps.
+    typedef double Pair __attribute__((vector_size(16)));  // NOLINT(modernize-use-using): GCC 12
+    static Pair plan_of(const Tin::Vertex& v) { return Pair{v.x, v.y}; }
+    static double sum_of(Pair p) { return p[0] + p[1]; }
+
     static constexpr double kMargin = 1.01;
     double level_squared_;    ///< of the normal that is as long as twice the area
     double upright_squared_;  ///< of its vertical part
