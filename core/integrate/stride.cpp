@@ -3,7 +3,6 @@
 // far from everything that rounding could confuse it with. It does what `cross_facet_edge` does
 // there, with each vertex and triangle looked at once.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "core/integrate/march.hpp"
@@ -112,7 +111,7 @@ bool March::stride(Side& exit) {
 
 /// Whether neither end of the edge is near the input segment, nor the edge near where the march
 /// stands.
-bool March::is_plain(const Passing& here) const {
+[[gnu::always_inline]] inline bool March::is_plain(const Passing& here) const {
     const double reach = reach_of_rounding_ * length_;
     if (!(here.of_a.value < -(reach + here.of_a.error) &&
           here.of_b.value > reach + here.of_b.error))
@@ -123,7 +122,7 @@ bool March::is_plain(const Passing& here) const {
 
 /// The segment's end, where that is plainly on the edge; where it is plainly beyond, the point in
 /// which the input segment crosses the edge, as `crossing_of` has it. False: neither is plain.
-bool March::find_plain_split(const Passing& here, Point2& p) const {
+[[gnu::always_inline]] inline bool March::find_plain_split(const Passing& here, Point2& p) const {
     const Tin::Vertex* a = &here.a;
     const Tin::Vertex* b = &here.b;
     const AreaEstimate end = estimate_doubled_area(a->plan(), b->plan(), end_);
@@ -151,7 +150,7 @@ bool March::find_plain_split(const Passing& here, Point2& p) const {
 
 /// Whether the split leaves all triangles strictly positive and bends the edge no more than the
 /// rounding of one position.
-bool March::is_plainly_split(const Passing& here, Point2 p) const {
+[[gnu::always_inline]] inline bool March::is_plainly_split(const Passing& here, Point2 p) const {
     const Point2 a = here.a.plan(), b = here.b.plan(), c = here.c.plan(), d = here.d.plan();
     if (!is_left(a, p, c) || !is_left(p, b, c) || !is_left(b, p, d) || !is_left(p, a, d))
         return false;
@@ -164,7 +163,7 @@ bool March::is_plainly_split(const Passing& here, Point2 p) const {
 
 /// Splits the edge at p, goes there, and says by which edge the way goes on; invalid where that has
 /// to be looked for.
-Side March::pass(const Passing& here, Point2 p) {
+[[gnu::always_inline]] inline Side March::pass(const Passing& here, Point2 p) {
     const Point2 a = here.a.plan(), b = here.b.plan(), d = here.d.plan();
     const bool is_end = p == end_;
     const Orientation turn = orientation(p, is_end ? ahead_ : end_, d);
@@ -198,7 +197,7 @@ Side March::pass(const Passing& here, Point2 p) {
 /// What the split leaves to improve, which is known while the triangles are at hand: where facets
 /// were whole before the way cut through them, one edge of each, that is looked at as soon as the
 /// way is out of the facet.
-March::Seam March::seam_of(const Passing& here) const {
+[[gnu::always_inline]] inline March::Seam March::seam_of(const Passing& here) const {
     Seam seam;
     if (improver_ == nullptr) return seam;
     const Side next = here.exit.next(), previous = here.exit.previous();
@@ -208,14 +207,16 @@ March::Seam March::seam_of(const Passing& here) const {
                      sides_inside(tin_.triangle(here.across.triangle())) == 0;
     if (!seam.is_simple || !(next_is_free || previous_is_free)) return seam;
     const Side free = next_is_free ? next : previous;
-    seam.is_simple = std::has_single_bit(sides_inside(tin_.triangle(tin_.twin(free).triangle())));
+    const std::uint32_t beyond = sides_inside(tin_.triangle(tin_.twin(free).triangle()));
+    seam.is_simple = (beyond & (beyond - 1)) == 0;
     seam.free = free;
     seam.is_next = next_is_free;
     return seam;
 }
 
 /// Improves what the split left, or leaves it to the improver.
-void March::close(const Seam& seam, TriangleId other, TriangleId entered) {
+[[gnu::always_inline]] inline void March::close(const Seam& seam, TriangleId other,
+                                                TriangleId entered) {
     open_ = {};
     if (!seam.is_simple) {
         changed_.push_back(at_);
