@@ -17,6 +17,9 @@ class Drift {
     /// `first`: what the request's first new vertex will be.
     explicit Drift(std::size_t first) : first_(first) {}
 
+    /// Makes room for so many more vertices.
+    void expect(std::size_t vertices) { nesting_.reserve(nesting_.size() + vertices); }
+
     /// How far the vertex is, in plan, off the edge between facets that it was put on, where that
     /// is more than the rounding of one position; session unit. Zero for vertices that were there
     /// before the request.
@@ -43,11 +46,15 @@ class Drift {
 
     /// How often elevations were interpolated one from the other to give the vertex its own.
     std::uint32_t nesting_of(VertexId v) const {
-        return knows(v) ? of_[v.index() - first_].nesting : 0;
+        // Vertices from before the request wrap around to numbers past the end.
+        const std::size_t i = v.index() - first_;
+        return i < nesting_.size() ? nesting_[i] : 0;
     }
     /// A new vertex took its elevation from others, of which the deepest is given.
     void nest(VertexId v, std::uint32_t below) {
-        at(v).nesting = below + 1;
+        const std::size_t i = v.index() - first_;
+        if (i >= nesting_.size()) nesting_.resize(i + 1);
+        nesting_[i] = below + 1;
         deepest_ = std::max(deepest_, below + 1);
     }
     std::uint32_t deepest() const { return deepest_; }
@@ -56,7 +63,6 @@ class Drift {
     struct OfVertex {
         double bend = 0.0;
         double stray = 0.0;
-        std::uint32_t nesting = 0;
     };
 
     bool knows(VertexId v) const { return v.index() >= first_ && v.index() - first_ < of_.size(); }
@@ -67,7 +73,8 @@ class Drift {
     }
 
     std::size_t first_;
-    std::vector<OfVertex> of_;
+    std::vector<OfVertex> of_;  ///< as far as any is off anything
+    std::vector<std::uint32_t> nesting_;
     double largest_bend_ = 0.0;
     std::uint32_t deepest_ = 0;
 };

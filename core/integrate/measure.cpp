@@ -122,6 +122,7 @@ void fetch_ahead(const Tin& tin, const UndoRecord& record, std::size_t i) {
 /// Vertices that the operation moved up or down, with the elevations they had, in order.
 std::vector<std::pair<VertexId, double>> moved_vertices(const Tin& tin, const UndoRecord& record) {
     std::vector<std::pair<VertexId, double>> moved;
+    if (!record.moved_vertices) return moved;
     for (const auto& [id, old] : record.vertices)
         if (old.z != tin.vertex(id).z) moved.emplace_back(id, old.z);
     // The first record of a vertex is what it was before the operation.

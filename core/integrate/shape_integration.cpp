@@ -26,6 +26,11 @@ bool met_divided_facets(const Tin& tin, const UndoRecord& record) {
 }  // namespace
 
 bool ShapeIntegration::run(const Shape& shape) {
+    std::size_t points = 0;
+    for (const Path& path : shape.paths)
+        points += path.points.size();
+    surgery_.expect(points);
+    drift_.expect(points);
     for (std::size_t p = 0; p < shape.paths.size(); ++p)
         if (!shape.paths[p].points.empty() && !run(p, shape.paths[p])) return false;
     improve(0);

@@ -44,6 +44,10 @@ Surgery::Surgery(Tin& tin) : tin_(tin) {
     record_.bounds = tin.bounds_;
 }
 
+void Surgery::expect(std::size_t vertices) {
+    record_.triangles.reserve(record_.triangles.size() + 2 * vertices);
+}
+
 Surgery::~Surgery() {
     if (open_) roll_back();
 }
@@ -364,6 +368,7 @@ bool Surgery::is_fresh(Side s) const {
 
 void Surgery::set_elevation(VertexId v, double z) {
     double& elevation = edit(v).z;
+    record_.moved_vertices = true;
     Bounds& box = tin_.bounds_;
     if (elevation == box.min.z || elevation == box.max.z) bounds_are_stale_ = true;
     elevation = z;

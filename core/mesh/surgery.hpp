@@ -18,6 +18,9 @@ class Surgery {
     /// Rolls back unless committed.
     ~Surgery();
 
+    /// Makes room to record about so many new vertices.
+    void expect(std::size_t vertices);
+
     const Tin& tin() const { return tin_; }
     const UndoRecord& record() const { return record_; }
 

@@ -20,6 +20,7 @@ struct UndoRecord {
     std::uint32_t next_facet = 0;
     double facet_error = 0.0;
     Bounds bounds;
+    bool moved_vertices = false;                                  ///< any, up or down
     std::vector<std::pair<TriangleId, Tin::Triangle>> triangles;  ///< each old slot once
     std::vector<std::pair<VertexId, Tin::Vertex>> vertices;       ///< in order of change
 };
