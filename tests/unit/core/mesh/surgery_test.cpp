@@ -112,6 +112,64 @@ TEST(SplitEdge, OnTheBoundaryAppendsOneTriangleAndIsFoundThere) {
     EXPECT_EQ(violations(tin), "");
 }
 
+/// The square without a constraint on its diagonal, which is a facet's border.
+Tin open_square() {
+    MeshData data = square();
+    data.constraints = {{0, 1}, {2, 3}};
+    return test::built(data);
+}
+
+TEST(SplitAndPass, GivesTheNewSlotToTheHalfBesideTheOriginWhereTheWayGoesPastIt) {
+    Tin tin = open_square();
+    Surgery surgery(tin);
+    const VertexId p = surgery.split_and_pass({{0}, 2}, {2, 2, 1}, true, false);  // 2 -> 0
+    EXPECT_TRUE(surgery.is_fresh(find_edge(tin, p, {1})));
+    surgery.commit();
+    EXPECT_EQ(p, VertexId{4});
+    EXPECT_EQ(corners(tin, 0), (Corners{4, 1, 2}));
+    EXPECT_EQ(corners(tin, 1), (Corners{0, 4, 3}));
+    EXPECT_EQ(corners(tin, 2), (Corners{4, 0, 1}));
+    EXPECT_EQ(corners(tin, 3), (Corners{4, 2, 3}));
+    EXPECT_TRUE(is_constrained(tin, 4, 1));
+    EXPECT_FALSE(is_constrained(tin, 4, 3));
+    EXPECT_FALSE(tin.separates_facets(find_edge(tin, {4}, {3})));
+    EXPECT_TRUE(tin.separates_facets(find_edge(tin, {4}, {0})));
+    EXPECT_TRUE(is_constrained(tin, 0, 1));
+    EXPECT_TRUE(is_constrained(tin, 2, 3));
+    EXPECT_EQ(violations(tin), "");
+}
+
+TEST(SplitAndPass, GivesTheNewSlotToTheHalfBesideTheDestinationElse) {
+    Tin tin = open_square();
+    Surgery surgery(tin);
+    surgery.split_and_pass({{0}, 2}, {2, 2, 1}, false, true);
+    surgery.commit();
+    EXPECT_EQ(corners(tin, 0), (Corners{4, 1, 2}));
+    EXPECT_EQ(corners(tin, 1), (Corners{4, 2, 3}));
+    EXPECT_EQ(corners(tin, 2), (Corners{4, 0, 1}));
+    EXPECT_EQ(corners(tin, 3), (Corners{0, 4, 3}));
+    EXPECT_TRUE(is_constrained(tin, 4, 1));
+    EXPECT_TRUE(tin.is_locked(find_edge(tin, {4}, {1})));
+    EXPECT_FALSE(tin.is_locked(find_edge(tin, {4}, {3})));
+    EXPECT_EQ(violations(tin), "");
+}
+
+TEST(SplitAndPass, TouchesNoTriangleThatTheWayDoesNotMeet) {
+    for (const bool past_a : {true, false}) {
+        Tin tin = test::built(test::grid(4, 4));
+        const Side side = find_edge(tin, {6}, {12});  // a diagonal inside
+        const bool past_origin = past_a == (tin.origin(side) == VertexId{6});
+        const Side across = tin.twin(side);
+        const Side missed = past_origin ? across.previous() : across.next();
+        const TriangleId beyond = tin.twin(missed).triangle();
+        Surgery surgery(tin);
+        surgery.split_and_pass(side, {1.5, 1.5, 0}, past_origin, false);
+        EXPECT_EQ(surgery.record().triangles.size(), 4u);
+        for (const auto& [id, old] : surgery.record().triangles)
+            EXPECT_NE(id, beyond) << past_a;
+    }
+}
+
 TEST(SwapEdge, ExchangesTheDiagonalAndKeepsOuterMarks) {
     MeshData data = square();
     data.constraints = {{1, 2}, {3, 0}};
@@ -202,6 +260,21 @@ TEST(Surgery, RollsBackWhenNotCommitted) {
     EXPECT_EQ(violations(tin), "");
 }
 
+TEST(Surgery, KeepsWhatMarksSayAboutFacetsThroughSwapsAndFreshFacets) {
+    Tin tin = test::built(test::grid(3, 3));
+    Surgery surgery(tin);
+    const VertexId p = surgery.split_triangle({4}, {2.5, 0.25, 0});
+    const Side spoke = find_edge(tin, p, {2});
+    EXPECT_FALSE(tin.separates_facets(spoke));
+    EXPECT_TRUE(tin.is_free(spoke));
+    surgery.give_fresh_facet(spoke.triangle());
+    EXPECT_TRUE(tin.separates_facets(spoke));
+    EXPECT_TRUE(tin.separates_facets(tin.twin(spoke)));
+    surgery.swap_edge(find_edge(tin, {5}, {10}));  // between two facets
+    surgery.commit();
+    EXPECT_EQ(violations(tin), "");
+}
+
 /// Random lawful changes, then laws, then all of it taken back.
 void change_at_random(Tin& tin, Surgery& surgery, std::mt19937_64& random, int count) {
     for (int k = 0; k < count; ++k) {
@@ -213,7 +286,7 @@ void change_at_random(Tin& tin, Surgery& surgery, std::mt19937_64& random, int c
         const Point2 d = twin.valid() ? tin.plan(tin.apex(twin)) : Point2{};
         const Point2 middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
         const Point2 centre{(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3};
-        switch (random() % 4) {
+        switch (random() % 5) {
             case 0:
                 if (is_left(a, b, centre) && is_left(b, c, centre) && is_left(c, a, centre))
                     surgery.split_triangle(t, {centre.x, centre.y, elevation_in(tin, t, centre)});
@@ -225,6 +298,13 @@ void change_at_random(Tin& tin, Surgery& surgery, std::mt19937_64& random, int c
                 break;
             case 2:
                 if (twin.valid() && is_left(a, d, c) && is_left(d, b, c)) surgery.swap_edge(side);
+                break;
+            case 3:
+                if (twin.valid() && tin.separates_facets(side) && !tin.is_fixed(side) &&
+                    is_left(a, middle, c) && is_left(middle, b, c) && is_left(b, middle, d) &&
+                    is_left(middle, a, d))
+                    surgery.split_and_pass(side, {middle.x, middle.y, 0.25}, random() % 2 == 0,
+                                           random() % 3 == 0);
                 break;
             default:
                 surgery.mark_constrained(side);
