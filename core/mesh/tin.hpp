@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/mesh/boundary_index.hpp"
+#include "core/mesh/line_allocator.hpp"
 #include "core/types/ids.hpp"
 #include "core/types/mesh_data.hpp"
 #include "core/types/point.hpp"
@@ -163,8 +164,8 @@ class Tin {
     friend class TinBuilder;
     friend class Surgery;
 
-    std::vector<Vertex> vertices_;
-    std::vector<Triangle> triangles_;
+    std::vector<Vertex, LineAllocator<Vertex>> vertices_;
+    std::vector<Triangle, LineAllocator<Triangle>> triangles_;
     std::vector<ConstraintSplit> constraint_splits_;
     std::uint32_t next_facet_ = 0;
     double facet_error_ = 0.0;
