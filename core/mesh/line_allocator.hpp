@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <new>
 
 namespace tinsmith::core {
@@ -18,17 +20,27 @@ class LineAllocator {
     LineAllocator(const LineAllocator<U>& /*other*/) {}  // NOLINT(google-explicit-constructor)
 
     T* allocate(std::size_t count) {
-        if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
-        return static_cast<T*>(::operator new(count * sizeof(T), kLine));
+        if (count > (static_cast<std::size_t>(-1) - kLine) / sizeof(T))
+            throw std::bad_array_new_length();
+        // By hand: aligned `operator new` of glibc leaves pieces that later requests search
+        // through.
+        char* const whole = static_cast<char*>(::operator new(count * sizeof(T) + kLine));
+        char* const aligned = whole + kLine - reinterpret_cast<std::uintptr_t>(whole) % kLine;
+        std::memcpy(aligned - sizeof(whole), &whole, sizeof(whole));
+        return reinterpret_cast<T*>(aligned);
     }
-    void deallocate(T* memory, std::size_t count) {
-        ::operator delete(memory, count * sizeof(T), kLine);
+    void deallocate(T* memory, std::size_t /*count*/) {
+        char* whole = nullptr;
+        std::memcpy(&whole, reinterpret_cast<char*>(memory) - sizeof(whole), sizeof(whole));
+        ::operator delete(whole);
     }
 
     friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
 
   private:
-    static constexpr std::align_val_t kLine{64};
+    /// Memory from `operator new` is aligned to 16, so that there are 16 bytes before the line.
+    static constexpr std::size_t kLine = 64;
+    static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= sizeof(void*));
 };
 
 }  // namespace tinsmith::core
