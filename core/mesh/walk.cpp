@@ -150,20 +150,53 @@ Side side_from(const Tin& tin, TriangleId t, VertexId v) {
     return {t, vertices[0] == v ? 0U : vertices[1] == v ? 1U : 2U};
 }
 
+namespace {
+
+/// Turns around a vertex, counter-clockwise to the border or once around, then clockwise from the
+/// start to the border's other side. At each stop looks at a triangle's two sides at the vertex.
+class Turn {
+  public:
+    Turn(const Tin& tin, VertexId v) : tin_(tin), start_(side_from(tin, v)), at_(start_) {}
+
+    bool ended() const { return !at_.valid(); }
+    /// The side that joins the vertex and w, of the triangle it looks at; invalid for none.
+    Side joining(VertexId w) const {
+        if (tin_.destination(at_) == w) return at_;
+        return tin_.apex(at_) == w ? at_.previous() : Side{};
+    }
+    void step() {
+        if (!clockwise_) {
+            at_ = tin_.twin(at_.previous());
+            if (at_ == start_)
+                at_ = {};
+            else if (!at_.valid()) {
+                clockwise_ = true;
+                at_ = start_;
+            } else
+                return;
+            if (!at_.valid()) return;
+        }
+        at_ = tin_.twin(at_);
+        if (at_.valid()) at_ = at_.next();
+    }
+
+  private:
+    const Tin& tin_;
+    Side start_;
+    Side at_;
+    bool clockwise_ = false;
+};
+
+}  // namespace
+
 Side find_edge(const Tin& tin, VertexId v, VertexId w) {
-    const Side start = side_from(tin, v);
-    Side s = start;
-    do {  // counter-clockwise
-        if (tin.destination(s) == w) return s;
-        if (tin.apex(s) == w) return s.previous();
-        s = tin.twin(s.previous());
-    } while (s.valid() && s != start);
-    if (s.valid()) return {};
-    s = tin.twin(start);  // the rest of an open fan, clockwise
-    while (s.valid()) {
-        s = s.next();
-        if (tin.destination(s) == w) return s;
-        s = tin.twin(s);
+    // From both ends in turn: an edge may join a vertex of three triangles to one of thousands.
+    Turn at_v(tin, v), at_w(tin, w);
+    while (!at_v.ended() && !at_w.ended()) {
+        if (const Side side = at_v.joining(w); side.valid()) return side;
+        if (const Side side = at_w.joining(v); side.valid()) return side;
+        at_v.step();
+        at_w.step();
     }
     return {};
 }
