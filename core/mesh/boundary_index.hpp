@@ -15,8 +15,9 @@ namespace tinsmith::core {
 /// so the vertex names the edge. When an edge is split, its entry stays with the longer half, and
 /// the shorter gets one of its own: no place is covered by many, however often an edge is split.
 ///
-/// The box is halved, and its parts again, wherever many edges are: so a border of a hundred
-/// thousand edges in one straight line costs no more to ask than one spread over the box.
+/// The box is a coarse grid of cells, which are halved, and their halves again, wherever many edges
+/// are: so a border of a hundred thousand edges in one straight line costs no more to ask than one
+/// spread over the box.
 /// Promise: `near` names every boundary edge that comes within the margin, or within rounding, of
 /// the segment. It may name more. What it names depends on the changes that are left, not on those
 /// that were taken back.
@@ -57,9 +58,8 @@ class BoundaryIndex {
         std::uint32_t renamed = UINT32_MAX;  ///< that entry; all ones: none
         VertexId before;                     ///< whose it was
     };
-    struct Box {
-        Point2 min;
-        Point2 max;
+    struct Box {  // plain, so that room for many costs nothing
+        double left, low, right, high;
     };
     /// A part of the box.
     struct Node {
@@ -73,19 +73,25 @@ class BoundaryIndex {
     };
 
     static Box half_of(const Box& box, bool by_y, bool upper);
+    template <typename Visit>
+    void for_each_cell(Point2 p, Point2 q, double margin, Visit visit) const;
     bool touches(const Box& box, Point2 p, Point2 q, double margin) const;
     template <typename Visit>
     void for_each_part(Point2 p, Point2 q, double margin, Visit visit) const;
+    template <typename Visit>
+    void for_each_part_of(const Part& cell, Point2 p, Point2 q, double margin, Visit& visit) const;
     void append(const Entry& entry);
     void halve_where_crowded(Part part);
     bool halve(const Part& part);
     void take_back_halving();
     std::uint32_t find(VertexId v, Point2 p) const;
 
-    Box box_;
+    Box box_{};
+    std::size_t columns_ = 0;
+    std::size_t rows_ = 0;
     double rounding_ = 0.0;  ///< more than what rounding does to any position in the box
     std::vector<Entry> entries_;
-    std::vector<Node> nodes_;
+    std::vector<Node> nodes_;            ///< the grid's cells first, row by row
     std::vector<std::uint32_t> halved_;  ///< nodes, in the order in which they were halved
     std::size_t filed_ = 0;              ///< entries of all nodes that are not halved
     std::vector<Change> changes_;
