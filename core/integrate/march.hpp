@@ -101,6 +101,7 @@ class March {
     bool reach(VertexId t, bool needs_swaps);
     bool within_budget();
     bool within_limits();
+    bool has_ids();
     bool fail(ErrorCode code, const char* detail);
 
     // stand.cpp
