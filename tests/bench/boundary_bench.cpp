@@ -10,7 +10,7 @@
 
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
-#include "tests/bench/border_shapes.hpp"
+#include "tests/support/border_shapes.hpp"
 
 namespace {
 
@@ -22,9 +22,9 @@ double now_ms() {
 }
 
 /// One row; false where the size is better not doubled again.
-bool run(const bench::BorderShape& shape, std::size_t size, double& before) {
+bool run(const test::BorderShape& shape, std::size_t size, double& before) {
     constexpr double kLongEnough = 8'000.0;
-    const bench::BorderCase made = shape.make(size);
+    const test::BorderCase made = shape.make(size);
     auto tin = core::build_tin(made.mesh);
     if (!tin) {
         std::printf("%-20s %8zu the mesh is refused: %s\n", shape.name, size,
@@ -69,7 +69,7 @@ int main(int count, char** arguments) {
     const std::size_t largest = count > 2 ? std::strtoull(arguments[2], nullptr, 10) : 256'000;
     std::printf("%-20s %8s %9s %9s %9s %10s %6s %9s %9s %9s %8s\n", "shape", "size", "crossings",
                 "vertices", "outside", "ms", "times", "locate", "integrate", "improve", "undo");
-    for (const bench::BorderShape& shape : bench::border_shapes()) {
+    for (const test::BorderShape& shape : test::border_shapes()) {
         if (!wanted.empty() && wanted != shape.name) continue;
         double before = 0.0;
         for (std::size_t size = 1'000; size <= largest; size *= 4)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/bench/border_shapes.hpp"
+#include "tests/support/border_shapes.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
-namespace tinsmith::bench {
+namespace tinsmith::test {
 
 namespace {
 
@@ -301,4 +301,4 @@ std::span<const BorderShape> border_shapes() {
     return kShapes;
 }
 
-}  // namespace tinsmith::bench
+}  // namespace tinsmith::test

@@ -8,7 +8,7 @@
 #include "core/integrate/shape.hpp"
 #include "core/types/mesh_data.hpp"
 
-namespace tinsmith::bench {
+namespace tinsmith::test {
 
 /// A mesh, and a request whose work is about linear in the case's size.
 struct BorderCase {
@@ -25,4 +25,4 @@ struct BorderShape {
 /// All of them, the same every time.
 std::span<const BorderShape> border_shapes();
 
-}  // namespace tinsmith::bench
+}  // namespace tinsmith::test
