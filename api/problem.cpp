@@ -64,6 +64,7 @@ ProblemType type_of_error(core::ErrorCode code) {
             return BodyTooLarge;
         case core::ErrorCode::CrossingBudget:
         case core::ErrorCode::TriangleBudget:
+        case core::ErrorCode::IdBudget:
             return BudgetExceeded;
         case core::ErrorCode::Cancelled:
             return Stopped;

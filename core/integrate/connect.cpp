@@ -113,9 +113,9 @@ Side March::edge_on_way(double limit) const {
 
 /// Takes `edge_on_way`, once from each vertex: the straight way may lead back to it.
 Side March::detour(double limit) {
-    if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end()) return {};
+    if (detours_.contains(at_)) return {};
     const Side edge = edge_on_way(limit);
-    if (edge.valid()) detours_.push_back(at_);
+    if (edge.valid()) detours_.insert(at_);
     return edge;
 }
 

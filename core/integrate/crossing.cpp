@@ -58,7 +58,8 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     if (!tin_.twin(exit).valid() && !needs_swaps &&
         is_near_edge(exit, tin_.plan(at_), reach_of_rounding_)) {
         leave_mesh();
-        boundary_visits_.insert(boundary_visits_.end(), {a, b});
+        boundary_visits_.insert(a);
+        boundary_visits_.insert(b);
         return true;
     }
     if (is_near_edge(exit, end_, reach_of_rounding_) && can_split(exit, end_))
@@ -255,11 +256,11 @@ std::optional<VertexId> March::end_beside(Side edge) {
     const Point2 here = tin_.plan(at_);
     for (const VertexId v : {tin_.origin(edge), tin_.destination(edge)}) {
         const Point2 p = tin_.plan(v);
-        if (v == at_ || std::find(detours_.begin(), detours_.end(), v) != detours_.end()) continue;
+        if (v == at_ || detours_.contains(v)) continue;
         if (!is_near_segment(p, reach_of_rounding_)) continue;
         if (std::max(std::fabs(p.x - here.x), std::fabs(p.y - here.y)) > reach_of_rounding_)
             continue;
-        detours_.push_back(v);
+        detours_.insert(v);
         return v;
     }
     return {};

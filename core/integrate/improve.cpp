@@ -60,8 +60,8 @@ std::pair<std::uint64_t, std::uint64_t> in_order(std::uint64_t one, std::uint64_
 
 void Improver::improve(const std::vector<VertexId>& vertices) {
     unasked_ = 8 * vertices.size();
-    for (const VertexId v : vertices)
-        add_star(v);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        if (!is_named_again(vertices, i)) add_star(vertices[i]);
     seen_ = tin_.vertex_count();
     while (!pending_.empty()) {
         // A side that an earlier swap moved names another edge of the same two triangles, all of
@@ -84,6 +84,14 @@ bool Improver::improve(Side s) {
     surgery_.swap_edge(s);
     ++edges_swapped_;
     return true;
+}
+
+/// Whether the vertex is one that edges of a corridor share, and comes again with the next of them:
+/// what waits last is looked at first, so that once is enough, and a hub of thousands of edges is
+/// not walked for each of them.
+bool Improver::is_named_again(const std::vector<VertexId>& vertices, std::size_t i) {
+    return (i + 1 < vertices.size() && vertices[i + 1] == vertices[i]) ||
+           (i + 2 < vertices.size() && vertices[i + 2] == vertices[i]);
 }
 
 /// Adds the edges at the vertex, and those across from it in its triangles.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,7 @@ class Improver {
         VertexId a, b, c, d;
     };
 
+    static bool is_named_again(const std::vector<VertexId>& vertices, std::size_t i);
     void add_star(VertexId v);
     void add_at(Side side, std::uint32_t newest);
     bool may_swap(Side s) const;

@@ -18,6 +18,10 @@ CrossFacetImprover::Outcome CrossFacetImprover::improve(Surgery& surgery,
         while (!candidates.empty()) {
             const Side s = candidates.take();
             if (surgery.tin().is_fixed(s)) continue;
+            if (surgery.tin().next_facet() + std::size_t{2} > most_facets_) {
+                outcome.has_facets = false;
+                return outcome;
+            }
             const Side diagonal = swap_if_better(surgery, s);
             if (!diagonal.valid()) continue;
             ++outcome.edges_swapped;

@@ -36,6 +36,7 @@ class CrossFacetImprover {
     struct Outcome {
         std::uint64_t edges_swapped = 0;
         double max_deviation = 0.0;  ///< carried by any triangle it made, session unit
+        bool has_facets = true;      ///< false: it ended where none was left for another swap
     };
 
     /// `limit`: no triangle carries more, session unit. Without one: the published criterion.
@@ -44,6 +45,8 @@ class CrossFacetImprover {
 
     /// Vertices whose elevation the request set, in order.
     void hold_to(std::vector<VertexId> set_vertices) { set_vertices_ = std::move(set_vertices); }
+    /// The mesh may use up so many facets.
+    void limit_facets(std::size_t most) { most_facets_ = most; }
 
     /// Improves around the vertices and as far as swaps reach from there. Ends: by the second
     /// condition the sorted list of all aspects only gets better, and there are finitely many
@@ -62,6 +65,7 @@ class CrossFacetImprover {
     void carry(FacetId fresh, double deviation);
 
     double limit_;
+    std::size_t most_facets_ = kMaxFacets;
     double max_deviation_ = 0.0;
     std::uint64_t edges_swapped_ = 0;
     std::uint32_t first_facet_ = 0;  ///< the first fresh one; `carried_` follows it

@@ -75,11 +75,11 @@ class Request {
                                           : CrossFacetImprover();
         std::sort(set_vertices_.begin(), set_vertices_.end());
         improver.hold_to(std::move(set_vertices_));
+        improver.limit_facets(options_.ids.facets);
         for (std::size_t s = 0; s < shapes_.size(); ++s) {
             Surgery surgery(tin_);
-            if (!improve_across_facets(improver, surgery, s))
-                return Error{
-                    ErrorCode::Cancelled, "the request was cancelled; nothing was changed", {}};
+            if (std::optional<Error> error = improve_across_facets(improver, surgery, s))
+                return error;
             done_.push_back(surgery.commit());
         }
         // A later shape's swaps may have reached an earlier one's triangles.
@@ -94,21 +94,25 @@ class Request {
         return std::nullopt;
     }
 
-    /// One shape's, some vertices at a time. False: the caller said stop.
-    bool improve_across_facets(CrossFacetImprover& improver, Surgery& surgery, std::size_t s) {
+    /// One shape's, some vertices at a time.
+    std::optional<Error> improve_across_facets(CrossFacetImprover& improver, Surgery& surgery,
+                                               std::size_t s) {
         constexpr std::size_t kAskEvery = 256;
         ShapeReport& report = report_.shapes[s];
         double deviation = 0.0;
         const std::span<const VertexId> vertices = changed_[s];
         for (std::size_t i = 0; i < vertices.size(); i += kAskEvery) {
-            if (options_.cancelled && options_.cancelled()) return false;
+            if (options_.cancelled && options_.cancelled())
+                return Error{
+                    ErrorCode::Cancelled, "the request was cancelled; nothing was changed", {}};
             const auto outcome = improver.improve(
                 surgery, vertices.subspan(i, std::min(kAskEvery, vertices.size() - i)));
+            if (!outcome.has_facets) return Error{ErrorCode::IdBudget, kNoFacetLeft, {}};
             report.edges_swapped += outcome.edges_swapped;
             deviation = std::max(deviation, outcome.max_deviation);
         }
         report.max_vertical_deviation += deviation;
-        return true;
+        return std::nullopt;
     }
 
     Tin& tin_;

@@ -127,15 +127,9 @@ class LineSearch {
             found.push_back(tin_.vertex(start.vertex).triangle);
         else if (start.kind != Location::Kind::Outside)
             found.push_back(start.side.triangle());
-        const double dx = (axis.end.x - axis.start.x) / axis.length * reach_;
-        const double dy = (axis.end.y - axis.start.y) / axis.length * reach_;
-        for (const double side : {-1.0, 0.0, 1.0}) {
-            const Point2 from{axis.start.x - dx - side * dy, axis.start.y - dy + side * dx};
-            const Point2 to{axis.end.x + dx - side * dy, axis.end.y + dy + side * dx};
-            for (const VertexId v : tin_.boundary().near(from, to)) {
-                const Side edge = boundary_side_from(tin_, v);
-                if (edge.valid() && is_near(axis, edge)) found.push_back(edge.triangle());
-            }
+        for (const VertexId v : tin_.boundary().near(axis.start, axis.end, reach_)) {
+            const Side edge = boundary_side_from(tin_, v);
+            if (edge.valid() && is_near(axis, edge)) found.push_back(edge.triangle());
         }
         return found;
     }

@@ -46,6 +46,8 @@ bool March::begin(std::size_t index, const Path& path) {
     from_ = to_ = 0;
     const Point2 start = path.points.front();
     start_ = end_ = start;
+    at_ = {};
+    if (!has_ids()) return false;
     outside_.clear();
     first_ = {};
     const std::size_t triangles = tin_.triangle_count();
@@ -246,7 +248,19 @@ bool March::within_budget() {
     return within_limits();
 }
 
+/// Asked before each step, which makes a few triangles at most.
+bool March::has_ids() {
+    constexpr std::size_t kOfAStep = 16;
+    if (tin_.triangle_count() + kOfAStep > options_.ids.triangles ||
+        tin_.vertex_count() + kOfAStep > options_.ids.vertices)
+        return fail(ErrorCode::IdBudget,
+                    "the mesh has as many triangles or vertices as can be numbered; nothing was "
+                    "changed; divide the terrain");
+    return true;
+}
+
 bool March::within_limits() {
+    if (!has_ids()) return false;
     if (tally_.crossings + tally_.self_crossings > limits_.max_crossings)
         return fail(ErrorCode::CrossingBudget,
                     "the request crosses more edges than allowed; send it in parts");

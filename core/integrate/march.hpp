@@ -14,6 +14,7 @@
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
 #include "core/mesh/surgery.hpp"
+#include "core/mesh/vertex_set.hpp"
 #include "core/mesh/walk.hpp"
 #include "core/types/error.hpp"
 
@@ -104,6 +105,7 @@ class March {
     bool reach(VertexId t, bool needs_swaps);
     bool within_budget();
     bool within_limits();
+    bool has_ids();
     bool fail(ErrorCode code, const char* detail);
 
     // stand.cpp
@@ -235,14 +237,14 @@ class March {
     static constexpr unsigned kMaxAbsorbed = 8;
     VertexId absorbed_at_;  ///< where the march last absorbed needles, and how many there
     unsigned absorbed_ = 0;
-    std::vector<Point2> outside_;            ///< the stretch outside that is being walked
-    std::vector<VertexId> boundary_visits_;  ///< where this segment met the boundary
-    double farthest_visit_ = 0.0;            ///< the last of them along the segment
-    std::vector<Entry> entries_;             ///< all that the segment may meet, in order
-    std::size_t next_entry_ = 0;             ///< the first that is not yet passed
+    std::vector<Point2> outside_;  ///< the stretch outside that is being walked
+    VertexSet boundary_visits_;    ///< where this segment met the boundary
+    double farthest_visit_ = 0.0;  ///< the last of them along the segment
+    std::vector<Entry> entries_;   ///< all that the segment may meet, in order
+    std::size_t next_entry_ = 0;   ///< the first that is not yet passed
     bool entries_known_ = false;
-    std::vector<VertexId> detours_;      ///< where this segment took an edge beside it, not across
-    std::vector<VertexId> spent_edges_;  ///< boundary edges that led back to one of those
+    VertexSet detours_;      ///< where this segment took an edge beside it, not across
+    VertexSet spent_edges_;  ///< boundary edges that led back to one of those
     /// Edges between at_ and the next vertex, by their ends, for swaps move sides about.
     std::vector<std::pair<VertexId, VertexId>> corridor_;
     std::vector<std::pair<VertexId, VertexId>> waiting_;

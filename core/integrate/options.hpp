@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "core/types/ids.hpp"
+
 namespace tinsmith::core {
 
 /// Which edges are swapped for better triangles once the lines are in. Constrained, locked and
@@ -28,6 +30,11 @@ enum class OnCrossing {
     Old,  ///< that of the mesh before the request
 };
 
+/// What to say when `IntegrateOptions::ids` leaves no facet.
+inline constexpr const char* kNoFacetLeft =
+    "the mesh has used up the numbers of its facets; nothing was changed; save it and make a new "
+    "session of it, where they start anew";
+
 struct IntegrateOptions {
     Improve improve = Improve::Strict;
     double max_deviation = 0.0;  ///< for Improve::Bounded, session unit
@@ -39,6 +46,8 @@ struct IntegrateOptions {
     bool lock = false;  ///< the paths' edges are locked as well as constrained
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
+    /// What the mesh may use up before the request is refused: what ids can count. Less in tests.
+    IdLimits ids = {};
     /// Asked now and then; true stops the work and leaves the mesh as it was.
     std::function<bool()> cancelled = {};
     /// Milliseconds from any fixed start; for the report alone, never in a decision.

@@ -29,14 +29,6 @@ double March::along(Point2 p) const {
     return (p.x - start_.x) * (end_.x - start_.x) + (p.y - start_.y) * (end_.y - start_.y);
 }
 
-namespace {
-
-bool contains(const std::vector<VertexId>& vertices, VertexId v) {
-    return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
-}
-
-}  // namespace
-
 /// All places where the segment may meet the boundary, in order along it. Once for each segment
 /// that gets outside, so that one which leaves the mesh a thousand times looks them up once.
 void March::collect_entries() {
@@ -46,7 +38,7 @@ void March::collect_entries() {
     farthest_visit_ = -reach_of_rounding_ * length_;
     for (const VertexId v : boundary_visits_)
         farthest_visit_ = std::max(farthest_visit_, along(tin_.plan(v)));
-    for (const VertexId v : tin_.boundary().near(start_, end_))
+    for (const VertexId v : tin_.boundary().near(start_, end_, reach_of_rounding_))
         if (const std::optional<Entry> entry = entry_at(v)) entries_.push_back(*entry);
     std::sort(entries_.begin(), entries_.end(), [](const Entry& l, const Entry& r) {
         return l.along != r.along ? l.along < r.along : l.vertex < r.vertex;
@@ -86,14 +78,14 @@ std::optional<March::Entry> March::next_entry() {
         ++next_entry_;
     for (std::size_t i = next_entry_; i < entries_.size(); ++i) {
         const VertexId v = entries_[i].vertex;
-        if (contains(spent_edges_, v)) continue;
+        if (spent_edges_.contains(v)) continue;
         // The mesh has changed since: the edge may have been split, here or by the way inside.
         const std::optional<Entry> entry = entry_at(v);
         if (!entry || entry->along < farthest_visit_ - rounding) continue;
         if (entry->along > farthest_visit_ + rounding) return entry;
         const bool is_known =
-            contains(boundary_visits_, v) ||
-            (entry->edge.valid() && contains(boundary_visits_, tin_.destination(entry->edge)));
+            boundary_visits_.contains(v) ||
+            (entry->edge.valid() && boundary_visits_.contains(tin_.destination(entry->edge)));
         if (entry->ends_here || !is_known) return entry;
     }
     return {};
@@ -101,7 +93,7 @@ std::optional<March::Entry> March::next_entry() {
 
 /// The boundary edge next to the position, where it is on it to within rounding.
 Location March::locate_on_boundary(Point2 p) const {
-    for (const VertexId v : tin_.boundary().near(p, p)) {
+    for (const VertexId v : tin_.boundary().near(p, p, reach_of_rounding_)) {
         if (v.index() >= tin_.vertex_count()) continue;
         const Side edge = boundary_side_from(tin_, v);
         if (edge.valid() && is_near_edge(edge, p, reach_of_rounding_ / 2.0) && can_split(edge, p))
@@ -121,8 +113,8 @@ bool March::enter_by(const Entry& entry) {
         if (!met && !p) met = end_within(entry.edge, std::max(near_, reach_of_rounding_));
         if (met && !ends_here) {
             // Back at a vertex that the segment left: this edge brings nothing new.
-            if (contains(boundary_visits_, *met)) {
-                spent_edges_.push_back(v);
+            if (boundary_visits_.contains(*met)) {
+                spent_edges_.insert(v);
                 return true;
             }
             v = *met;
@@ -146,7 +138,7 @@ bool March::enter_by(const Entry& entry) {
 }
 
 void March::visit_boundary(VertexId v) {
-    boundary_visits_.push_back(v);
+    boundary_visits_.insert(v);
     farthest_visit_ = std::max(farthest_visit_, along(tin_.plan(v)));
 }
 
@@ -154,28 +146,26 @@ void March::visit_boundary(VertexId v) {
 /// another, or lie inside another by exact predicates, and the way may go on there: stands on a
 /// vertex of that fan, once from each vertex. False: there is no such fan.
 bool March::enter_other_fan() {
-    if (std::find(detours_.begin(), detours_.end(), at_) != detours_.end()) return false;
+    if (detours_.contains(at_)) return false;
     const VertexId v = vertex_of_other_fan();
     if (!v.valid()) return false;
-    detours_.push_back(at_);
+    detours_.insert(at_);
     visit_boundary(at_);
     tally_.chains.push_back({path_index_, {}});
     stand_on(v);
-    if (v != at_) detours_.push_back(v);
+    if (v != at_) detours_.insert(v);
     return true;
 }
 
 VertexId March::vertex_of_other_fan() {
     const Point2 p = tin_.plan(at_);
-    const std::vector<VertexId> around =
-        tin_.boundary().near({p.x - near_, p.y - near_}, {p.x + near_, p.y + near_});
+    const std::vector<VertexId> around = tin_.boundary().near(p, p, near_);
     for (const VertexId v : around) {
         if (v == at_ || v.index() >= tin_.vertex_count() || !is_near_segment(tin_.plan(v), near_))
             continue;
         const Point2 q = tin_.plan(v);
         if ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) > near_ * near_ || q == end_ ||
-            along(q) < along(p) || find_edge(tin_, at_, v).valid() ||
-            std::find(detours_.begin(), detours_.end(), v) != detours_.end())
+            along(q) < along(p) || find_edge(tin_, at_, v).valid() || detours_.contains(v))
             continue;
         if (leave(tin_, v, end_, side_from(tin_, v)).kind != Departure::Kind::Outside) return v;
     }

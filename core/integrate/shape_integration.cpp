@@ -34,8 +34,7 @@ bool ShapeIntegration::run(const Shape& shape) {
     for (std::size_t p = 0; p < shape.paths.size(); ++p)
         if (!shape.paths[p].points.empty() && !run(p, shape.paths[p])) return false;
     improve(0);
-    set_elevations();
-    return true;
+    return set_elevations();
 }
 
 bool ShapeIntegration::run(std::size_t index, const Path& path) {
@@ -78,7 +77,7 @@ void ShapeIntegration::improve(std::size_t waiting) {
 /// Gives the chain the elevations that its paths bring; the last word on a vertex holds. The
 /// triangles there are no longer known to lie in one plane with any neighbour: each gets a facet of
 /// its own.
-void ShapeIntegration::set_elevations() {
+bool ShapeIntegration::set_elevations() {
     std::vector<OwnElevation> own = march_.own_elevations();
     std::stable_sort(own.begin(), own.end(), [](const OwnElevation& l, const OwnElevation& r) {
         return l.vertex < r.vertex;
@@ -92,12 +91,20 @@ void ShapeIntegration::set_elevations() {
         max_elevation_change_ = std::max(max_elevation_change_, change);
         set_vertices_.push_back(own[i].vertex);
         surgery_.set_elevation(own[i].vertex, own[i].z);
+        bool has_facets = true;
         for_each_side_at(tin, own[i].vertex, [&](Side side) {
-            for (const Side s : {side, tin.twin(side)})
-                if (s.valid() && tin.facet(s.triangle()).value < first_fresh)
-                    surgery_.give_fresh_facet(s.triangle());
+            for (const Side s : {side, tin.twin(side)}) {
+                if (!s.valid() || tin.facet(s.triangle()).value >= first_fresh) continue;
+                has_facets = has_facets && tin.next_facet() < options_.ids.facets;
+                if (has_facets) surgery_.give_fresh_facet(s.triangle());
+            }
         });
+        if (!has_facets) {
+            march_.error() = Error{ErrorCode::IdBudget, kNoFacetLeft, {}};
+            return false;
+        }
     }
+    return true;
 }
 
 ShapeReport ShapeIntegration::report() {

@@ -40,7 +40,7 @@ class ShapeIntegration {
   private:
     bool run(std::size_t index, const Path& path);
     void improve(std::size_t waiting);
-    void set_elevations();
+    bool set_elevations();
     double certify(double steepest_slope);
 
     Surgery& surgery_;

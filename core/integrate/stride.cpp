@@ -62,7 +62,7 @@ inline void March::fetch_apex(Side side) const {
 /// Asks, a few points ahead, for the triangles that the path will come to, and for their corners.
 void March::fetch_path() const {
     const std::vector<Point2>& points = path_->points;
-    constexpr std::size_t kHint = 8, kTriangle = 5, kCorners = 3;
+    constexpr std::size_t kHint = 16, kTriangle = 7, kCorners = 3;
     if (to_ + kHint >= points.size()) return;
     __builtin_prefetch(tin_.hint_place(points[to_ + kHint]));
     __builtin_prefetch(&tin_.triangle(tin_.hint(points[to_ + kTriangle])));

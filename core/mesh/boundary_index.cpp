@@ -2,74 +2,246 @@
 #include "core/mesh/boundary_index.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
+
+#include "core/types/ulp.hpp"
 
 namespace tinsmith::core {
 
-BoundaryIndex::BoundaryIndex(Point2 min, Point2 max, std::size_t edges) : min_(min), max_(max) {
-    make_grid(edges);
+namespace {
+
+/// A part with more entries is halved, where that helps.
+constexpr std::size_t kCrowded = 16;
+/// How often an edge may be filed on average, for parts that halving does not part cleanly.
+constexpr std::size_t kMostFiled = 8;
+/// So few cells that even a long segment over an empty box passes few.
+constexpr double kMostColumns = 64.0;
+
+/// Of so many rows, or columns, between low and high: the first and the last that have anything of
+/// what is given, one more on either side for rounding.
+std::pair<std::size_t, std::size_t> cells_of(std::size_t count, double low, double high,
+                                             double from, double to) {
+    const double last = static_cast<double>(count - 1);
+    const double per_unit = high > low ? static_cast<double>(count) / (high - low) : 0.0;
+    const auto cell = [&](double at) {
+        return static_cast<std::size_t>(std::clamp((at - low) * per_unit, 0.0, last));
+    };
+    const std::size_t first = cell(from);
+    return {first > 0 ? first - 1 : 0, std::min(cell(to) + 1, count - 1)};
 }
 
-/// An empty grid for so many edges.
-void BoundaryIndex::make_grid(std::size_t edges) {
-    const double width = max_.x - min_.x;
-    const double height = max_.y - min_.y;
-    const double side = std::clamp(std::sqrt(static_cast<double>(edges)), 1.0, 2048.0);
-    columns_ = rows_ = static_cast<std::size_t>(side);
-    cells_per_x_ = width > 0.0 ? static_cast<double>(columns_) / width : 0.0;
-    cells_per_y_ = height > 0.0 ? static_cast<double>(rows_) / height : 0.0;
-    cells_.assign(columns_ * rows_, {});
+}  // namespace
+
+BoundaryIndex::BoundaryIndex(Point2 min, Point2 max, std::size_t edges)
+    : box_{min.x, min.y, max.x, max.y} {
+    const double largest =
+        std::max({std::fabs(min.x), std::fabs(min.y), std::fabs(max.x), std::fabs(max.y)});
+    rounding_ = 32.0 * ulp(largest);
+    entries_.reserve(edges);
+    changes_.reserve(edges);
+    // Cells about as wide as they are high: an edge is filed in few.
+    const double width = max.x - min.x, height = max.y - min.y;
+    const double longer = std::max({width, height, rounding_});
+    const double most = std::clamp(std::sqrt(static_cast<double>(edges) / 4.0), 1.0, kMostColumns);
+    columns_ = static_cast<std::size_t>(std::max(1.0, width / longer * most));
+    rows_ = static_cast<std::size_t>(std::max(1.0, height / longer * most));
+    nodes_.resize(columns_ * rows_);
 }
 
-// Monotone in the coordinate, so that a box covers all cells of the points in it, whatever
-// rounding does. What lies outside the box counts to the nearest cell.
-std::size_t BoundaryIndex::column(double x) const {
-    const double cell = (x - min_.x) * cells_per_x_;
-    return cell <= 0.0 ? 0
-                       : std::min(columns_ - 1, static_cast<std::size_t>(std::min(cell, 4096.0)));
+BoundaryIndex::Box BoundaryIndex::half_of(const Box& box, bool by_y, bool upper) {
+    Box half = box;
+    if (by_y)
+        (upper ? half.low : half.high) = box.low + (box.high - box.low) / 2.0;
+    else
+        (upper ? half.left : half.right) = box.left + (box.right - box.left) / 2.0;
+    return half;
 }
 
-std::size_t BoundaryIndex::row(double y) const {
-    const double cell = (y - min_.y) * cells_per_y_;
-    return cell <= 0.0 ? 0 : std::min(rows_ - 1, static_cast<std::size_t>(std::min(cell, 4096.0)));
+/// Whether the segment comes within the margin, and what rounding may add, of the box. Never false
+/// where it does: halves meet in an edge, so that two segments that meet share a part.
+bool BoundaryIndex::touches(const Box& box, Point2 p, Point2 q, double margin) const {
+    const double reach = margin + rounding_;
+    if (std::max(p.x, q.x) < box.left - reach || std::min(p.x, q.x) > box.right + reach ||
+        std::max(p.y, q.y) < box.low - reach || std::min(p.y, q.y) > box.high + reach)
+        return false;
+    // Apart where all corners are on one side of the line through the segment.
+    const double dx = q.x - p.x, dy = q.y - p.y;
+    const double half_x = (box.right - box.left) / 2.0, half_y = (box.high - box.low) / 2.0;
+    const double one = dx * (box.low + half_y - p.y), other = dy * (box.left + half_x - p.x);
+    constexpr double kError = 0x1p-49;  // of the products and the differences in them
+    return std::fabs(one - other) <= std::fabs(dx) * (half_y + reach) +
+                                         std::fabs(dy) * (half_x + reach) +
+                                         kError * (std::fabs(one) + std::fabs(other));
 }
 
-BoundaryIndex::CellRange BoundaryIndex::cells_of(const Entry& entry) const {
-    const auto [left, right] = std::minmax({column(entry.p.x), column(entry.q.x)});
-    const auto [low, high] = std::minmax({row(entry.p.y), row(entry.q.y)});
-    return {left, right, low, high};
+/// Calls `visit` with each cell of the grid that the segment touches.
+template <typename Visit>
+void BoundaryIndex::for_each_cell(Point2 p, Point2 q, double margin, Visit visit) const {
+    if (nodes_.empty()) return;
+    const double reach = margin + rounding_;
+    const double width = box_.right - box_.left, height = box_.high - box_.low;
+    const double columns = static_cast<double>(columns_), rows = static_cast<double>(rows_);
+    if (p.y > q.y) std::swap(p, q);
+    const double run = q.y > p.y ? (q.x - p.x) / (q.y - p.y) : 0.0;
+    // From very far away it does not tell where in the row the segment is.
+    const bool is_told = std::fabs(p.x - box_.left) + std::fabs(p.y - box_.low) +
+                             std::fabs(q.x - p.x) + std::fabs(q.y - p.y) <
+                         0x1p20 * (width + height);
+    const auto [first, last] = cells_of(rows_, box_.low, box_.high, p.y - reach, q.y + reach);
+    for (std::size_t r = first; r <= last; ++r) {
+        Box cell{box_.left, box_.low + height * (static_cast<double>(r) / rows), box_.right,
+                 box_.low + height * (static_cast<double>(r + 1) / rows)};
+        double x0 = p.x, x1 = q.x;
+        if (is_told && q.y > p.y) {
+            x0 = p.x + (std::clamp(cell.low - reach, p.y, q.y) - p.y) * run;
+            x1 = p.x + (std::clamp(cell.high + reach, p.y, q.y) - p.y) * run;
+        }
+        const auto [left, right] = cells_of(columns_, box_.left, box_.right,
+                                            std::min(x0, x1) - reach, std::max(x0, x1) + reach);
+        for (std::size_t c = left; c <= right; ++c) {
+            cell.left = box_.left + width * (static_cast<double>(c) / columns);
+            cell.right = box_.left + width * (static_cast<double>(c + 1) / columns);
+            if (touches(cell, p, q, margin))
+                visit(Part{static_cast<std::uint32_t>(r * columns_ + c), cell});
+        }
+    }
 }
 
-void BoundaryIndex::file(std::uint32_t entry) {
-    const CellRange range = cells_of(entries_[entry]);
-    for (std::size_t r = range.low; r <= range.high; ++r)
-        for (std::size_t c = range.left; c <= range.right; ++c)
-            cells_[r * columns_ + c].push_back(entry);
+/// Calls `visit` with each part that is not halved and that the segment touches. What lies outside
+/// the whole box by more than rounding touches none.
+template <typename Visit>
+void BoundaryIndex::for_each_part(Point2 p, Point2 q, double margin, Visit visit) const {
+    for_each_cell(p, q, margin, [&](const Part& cell) {
+        if (nodes_[cell.node].halves == 0)
+            visit(cell);
+        else
+            for_each_part_of(cell, p, q, margin, visit);
+    });
+}
+
+template <typename Visit>
+void BoundaryIndex::for_each_part_of(const Part& cell, Point2 p, Point2 q, double margin,
+                                     Visit& visit) const {
+    // One waits for each halving above: at most 47 of either kind until a side is all rounding.
+    std::array<Part, 128> waiting;
+    waiting[0] = cell;
+    for (std::size_t count = 1; count > 0;) {
+        const Part part = waiting[--count];
+        const std::uint32_t halves = nodes_[part.node].halves;
+        if (halves == 0) {
+            visit(part);
+            continue;
+        }
+        for (const bool upper : {true, false}) {
+            const Box half = half_of(part.box, nodes_[part.node].by_y, upper);
+            if (touches(half, p, q, margin)) waiting[count++] = {halves + (upper ? 1U : 0U), half};
+        }
+    }
 }
 
 void BoundaryIndex::append(const Entry& entry) {
+    const auto id = static_cast<std::uint32_t>(entries_.size());
     entries_.push_back(entry);
-    constexpr std::size_t kCrowded = 8;
-    if (entries_.size() <= kCrowded * cells_.size() || columns_ >= 2048) {
-        file(static_cast<std::uint32_t>(entries_.size() - 1));
-        return;
+    std::vector<Part> parts;
+    for_each_part(entry.p, entry.q, 0.0, [&](const Part& part) {
+        nodes_[part.node].entries.push_back(id);
+        ++filed_;
+        parts.push_back(part);
+    });
+    // Where halving did not help, it is tried again once there are twice as many.
+    for (const Part& part : parts)
+        if (std::has_single_bit(nodes_[part.node].entries.size())) halve_where_crowded(part);
+}
+
+/// Ends: a half is no larger than its whole, and no smaller than rounding.
+void BoundaryIndex::halve_where_crowded(Part part) {
+    std::vector<Part> waiting{part};
+    while (!waiting.empty()) {
+        part = waiting.back();
+        waiting.pop_back();
+        if (nodes_[part.node].entries.size() < kCrowded || !halve(part)) continue;
+        const Node& node = nodes_[part.node];
+        for (const bool upper : {true, false})
+            waiting.push_back(
+                {node.halves + (upper ? 1U : 0U), half_of(part.box, node.by_y, upper)});
     }
-    make_grid(2 * entries_.size());
-    for (std::uint32_t i = 0; i < entries_.size(); ++i)
-        file(i);
+}
+
+/// Halves the part across x or y, whichever files fewer edges twice. False, and nothing done, where
+/// neither parts them.
+bool BoundaryIndex::halve(const Part& part) {
+    const double width = part.box.right - part.box.left;
+    const double height = part.box.high - part.box.low;
+    const std::size_t count = nodes_[part.node].entries.size();
+    std::size_t fewest = 2 * count;
+    bool best_by_y = false;
+    for (const bool by_y : {height > width, height <= width}) {
+        if ((by_y ? height : width) <= 8.0 * rounding_) continue;
+        std::array<std::size_t, 2> in_half{};
+        for (const bool upper : {false, true}) {
+            const Box half = half_of(part.box, by_y, upper);
+            for (const std::uint32_t e : nodes_[part.node].entries)
+                if (touches(half, entries_[e].p, entries_[e].q, 0.0)) ++in_half[upper ? 1 : 0];
+        }
+        // Clean: few are in both. Otherwise it must help, and there must be room.
+        const std::size_t sum = in_half[0] + in_half[1];
+        const bool is_clean = sum <= count + count / 4;
+        const bool helps = std::max(in_half[0], in_half[1]) <= count - count / 4 &&
+                           filed_ + sum - count <= kMostFiled * entries_.size();
+        if (sum >= fewest || !(is_clean || helps)) continue;
+        fewest = sum;
+        best_by_y = by_y;
+    }
+    if (fewest == 2 * count) return false;
+    std::array<std::vector<std::uint32_t>, 2> parted;
+    for (const bool upper : {false, true}) {
+        const Box half = half_of(part.box, best_by_y, upper);
+        for (const std::uint32_t e : nodes_[part.node].entries)
+            if (touches(half, entries_[e].p, entries_[e].q, 0.0))
+                parted[upper ? 1 : 0].push_back(e);
+    }
+    // What may fail, for lack of memory, comes before what is changed.
+    const auto halves = static_cast<std::uint32_t>(nodes_.size());
+    if (halved_.size() == halved_.capacity()) halved_.reserve(2 * halved_.size() + 16);
+    nodes_.resize(nodes_.size() + 2);
+    halved_.push_back(part.node);
+    nodes_[part.node].halves = halves;
+    nodes_[part.node].by_y = best_by_y;
+    nodes_[halves].entries.swap(parted[0]);
+    nodes_[halves + 1].entries.swap(parted[1]);
+    filed_ += fewest - count;
+    return true;
+}
+
+/// The node has its entries still.
+void BoundaryIndex::take_back_halving() {
+    Node& node = nodes_[halved_.back()];
+    filed_ = filed_ + node.entries.size() - nodes_[node.halves].entries.size() -
+             nodes_[node.halves + 1].entries.size();
+    node.halves = 0;
+    node.by_y = false;
+    nodes_.resize(nodes_.size() - 2);
+    halved_.pop_back();
 }
 
 void BoundaryIndex::add(VertexId v, Point2 p, Point2 q) {
+    changes_.push_back({entries_.size(), halved_.size(), UINT32_MAX, {}});
     append({v, p, q});
-    changes_.push_back({});
 }
 
 /// The newest entry under v of an edge through p; all ones where there is none.
 std::uint32_t BoundaryIndex::find(VertexId v, Point2 p) const {
-    const auto& cell = cells_[row(p.y) * columns_ + column(p.x)];
-    const auto found = std::find_if(cell.rbegin(), cell.rend(),
-                                    [&](std::uint32_t i) { return entries_[i].vertex == v; });
-    return found == cell.rend() ? UINT32_MAX : *found;
+    std::uint32_t newest = UINT32_MAX;
+    for_each_part(p, p, 0.0, [&](const Part& part) {
+        const auto& entries = nodes_[part.node].entries;
+        const auto found = std::find_if(entries.rbegin(), entries.rend(),
+                                        [&](std::uint32_t e) { return entries_[e].vertex == v; });
+        if (found != entries.rend() && (newest == UINT32_MAX || *found > newest)) newest = *found;
+    });
+    return newest;
 }
 
 void BoundaryIndex::add_split(VertexId v, Point2 a, VertexId w, Point2 p, Point2 b) {
@@ -77,7 +249,7 @@ void BoundaryIndex::add_split(VertexId v, Point2 a, VertexId w, Point2 p, Point2
         return std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y));
     };
     const std::uint32_t known = find(v, p);
-    if (known == UINT32_MAX) {  // rounding put p outside the cells of a-b
+    if (known == UINT32_MAX) {  // rounding put p outside the parts of a-b
         add(v, a, p);
         add(w, p, b);
         return;
@@ -86,58 +258,51 @@ void BoundaryIndex::add_split(VertexId v, Point2 a, VertexId w, Point2 p, Point2
         add(w, p, b);
         return;
     }
+    changes_.push_back({entries_.size(), halved_.size(), known, v});
     entries_[known].vertex = w;
     append({v, a, p});
-    changes_.push_back({known, v});
 }
 
 void BoundaryIndex::take_back(std::size_t count) {
     while (changes_.size() > count) {
         const Change change = changes_.back();
         changes_.pop_back();
-        const CellRange range = cells_of(entries_.back());
-        for (std::size_t r = range.low; r <= range.high; ++r)
-            for (std::size_t c = range.left; c <= range.right; ++c)
-                cells_[r * columns_ + c].pop_back();
-        entries_.pop_back();
+        while (halved_.size() > change.halvings)
+            take_back_halving();
         if (change.renamed != UINT32_MAX) entries_[change.renamed].vertex = change.before;
+        if (entries_.size() == change.entries) continue;  // memory ran out before it was made
+        const auto newest = static_cast<std::uint32_t>(change.entries);
+        for_each_part(entries_[newest].p, entries_[newest].q, 0.0, [&](const Part& part) {
+            std::vector<std::uint32_t>& entries = nodes_[part.node].entries;
+            if (entries.empty() || entries.back() != newest) return;
+            entries.pop_back();
+            --filed_;
+        });
+        entries_.pop_back();
     }
 }
 
 std::size_t BoundaryIndex::memory_bytes() const {
-    std::size_t bytes = entries_.size() * sizeof(Entry) + changes_.size() * sizeof(Change) +
-                        cells_.size() * sizeof(cells_[0]);
-    for (const auto& cell : cells_)
-        bytes += cell.size() * sizeof(std::uint32_t);
-    return bytes;
+    return entries_.size() * sizeof(Entry) + changes_.size() * sizeof(Change) +
+           nodes_.size() * sizeof(Node) + halved_.size() * sizeof(std::uint32_t) +
+           filed_ * sizeof(std::uint32_t);
 }
 
-std::vector<VertexId> BoundaryIndex::near(Point2 p, Point2 q) const {
+std::vector<VertexId> BoundaryIndex::near(Point2 p, Point2 q, double margin) const {
     std::vector<VertexId> found;
-    if (cells_.empty()) return found;
-    if (p.y > q.y) std::swap(p, q);
-    // Row by row: only the columns that the segment can reach within the row, one more on either
-    // side for rounding.
-    const std::size_t low = row(p.y);
-    const std::size_t high = row(q.y);
-    const double run = q.y > p.y ? (q.x - p.x) / (q.y - p.y) : 0.0;
-    for (std::size_t r = low; r <= high; ++r) {
-        double x0 = p.x;
-        double x1 = q.x;
-        if (low != high) {
-            const double bottom = min_.y + static_cast<double>(r) / cells_per_y_;
-            const double top = min_.y + static_cast<double>(r + 1) / cells_per_y_;
-            if (r != low) x0 = p.x + (bottom - p.y) * run;
-            if (r != high) x1 = p.x + (top - p.y) * run;
+    const double reach = margin + rounding_;
+    const Box box{std::min(p.x, q.x) - reach, std::min(p.y, q.y) - reach,
+                  std::max(p.x, q.x) + reach, std::max(p.y, q.y) + reach};
+    for_each_part(p, q, margin, [&](const Part& part) {
+        for (const std::uint32_t e : nodes_[part.node].entries) {
+            const Entry& entry = entries_[e];
+            if (std::max(entry.p.x, entry.q.x) >= box.left &&
+                std::min(entry.p.x, entry.q.x) <= box.right &&
+                std::max(entry.p.y, entry.q.y) >= box.low &&
+                std::min(entry.p.y, entry.q.y) <= box.high)
+                found.push_back(entry.vertex);
         }
-        const auto [left, right] = std::minmax({column(x0), column(x1)});
-        const std::size_t last = std::min(right + 1, columns_ - 1);
-        for (std::size_t c = left > 0 ? left - 1 : 0; c <= last; ++c) {
-            const auto& cell = cells_[r * columns_ + c];
-            for (const std::uint32_t entry : cell)
-                found.push_back(entries_[entry].vertex);
-        }
-    }
+    });
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;

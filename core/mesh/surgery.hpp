@@ -60,7 +60,7 @@ class Surgery {
     void raise_facet_error(double error);
 
     /// Gives the triangle a facet of its own, newer than all others: it is no longer known to lie
-    /// in one plane with a neighbour.
+    /// in one plane with a neighbour. Requires: fewer than kMaxFacets were made.
     FacetId give_fresh_facet(TriangleId t);
 
     /// Keeps the changes; what is returned can take them back (`undo`).

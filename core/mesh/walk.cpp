@@ -2,10 +2,11 @@
 #include "core/mesh/walk.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/predicates/orientation.hpp"
+#include "core/types/ulp.hpp"
 
 namespace tinsmith::core {
 
@@ -101,47 +102,92 @@ StraightWalk walk_straight(const Tin& tin, VertexId v, Point2 p) {
     }
 }
 
-/// Whether p is inside, by the boundary edges that the ray to +x crosses, half-open in y so that
-/// no vertex counts twice; then walks back along the ray from the nearest of them.
-Location locate_from_boundary(const Tin& tin, Point2 p) {
-    const Point2 far{std::max(tin.bounds().max.x, p.x), p.y};
-    struct Crossing {
-        double x;
-        Side side;
-    };
-    std::vector<Crossing> crossings;
-    for (const VertexId v : tin.boundary().near(p, far)) {
-        if (v.index() >= tin.vertex_count()) continue;
-        const Side side = boundary_side_from(tin, v);
-        if (!side.valid()) continue;
-        const Point2 a = tin.plan(v);
-        const Point2 b = tin.plan(tin.destination(side));
-        const Location here = locate_in(tin, side.triangle(), p);
-        if (here.kind != Location::Kind::Outside) return here;
-        if ((a.y > p.y) == (b.y > p.y)) continue;
-        const Orientation turn = orientation(a, b, p);
-        if ((b.y > a.y) != (turn == CounterClockwise)) continue;  // crosses to the west of p
-        crossings.push_back({a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y)), side});
-    }
-    if (crossings.size() % 2 == 0) return {};
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& l, const Crossing& r) {
-        return l.x != r.x ? l.x < r.x : l.side < r.side;
-    });
-    // Rounding can misplace crossings within a few ulps of each other, so a walk that runs out of
-    // the mesh leaves its turn to the next.
-    for (const Crossing& crossing : crossings) {
-        Side exit = crossing.side;
-        while (exit.valid()) {
-            const Location here = locate_in(tin, exit.triangle(), p);
-            if (here.kind != Location::Kind::Outside) return here;
-            // Go on through the other side that the ray crosses: vertices at its height are below.
-            const bool apex_above = tin.plan(tin.apex(exit)).y > p.y;
-            const bool origin_above = tin.plan(tin.origin(exit)).y > p.y;
-            exit = tin.twin(apex_above == origin_above ? exit.next() : exit.previous());
+/// Where the ray to +x from a position crosses the boundary.
+struct RayCrossing {
+    double x;
+    Side side;
+};
+
+/// Looks for the position from the boundary east of it.
+class BoundaryLook {
+  public:
+    BoundaryLook(const Tin& tin, Point2 p) : tin_(tin), p_(p) {}
+
+    Location locate() {
+        const double width = tin_.bounds().max.x - tin_.bounds().min.x;
+        const double far = std::max(tin_.bounds().max.x, p_.x);
+        // A little way first, and then four times as far each time: the nearest crossing tells, and
+        // what lies beyond it costs nothing. Ends after the factor's logarithm of the width.
+        for (double reach = width / 256.0; p_.x + reach < far; reach *= 4.0) {
+            look(p_.x + reach);
+            if (found_.kind != Location::Kind::Outside) return found_;
+            if (!nearest_tells(p_.x + reach)) continue;
+            return is_way_in(crossings_.front().side) ? walk_back() : Location{};
         }
+        look(far);
+        if (found_.kind != Location::Kind::Outside) return found_;
+        return crossings_.size() % 2 == 0 ? Location{} : walk_back();
     }
-    return {};
-}
+
+  private:
+    /// Collects the crossings up to x in order, half-open in y so that no vertex counts twice.
+    void look(double x) {
+        crossings_.clear();
+        for (const VertexId v : tin_.boundary().near(p_, {x, p_.y})) {
+            if (v.index() >= tin_.vertex_count()) continue;
+            const Side side = boundary_side_from(tin_, v);
+            if (!side.valid()) continue;
+            const Point2 a = tin_.plan(v);
+            const Point2 b = tin_.plan(tin_.destination(side));
+            found_ = locate_in(tin_, side.triangle(), p_);
+            if (found_.kind != Location::Kind::Outside) return;
+            if ((a.y > p_.y) == (b.y > p_.y)) continue;
+            const Orientation turn = orientation(a, b, p_);
+            if ((b.y > a.y) != (turn == CounterClockwise)) continue;  // crosses to the west of p
+            crossings_.push_back({a.x + (b.x - a.x) * ((p_.y - a.y) / (b.y - a.y)), side});
+        }
+        std::sort(crossings_.begin(), crossings_.end(),
+                  [](const RayCrossing& l, const RayCrossing& r) {
+                      return l.x != r.x ? l.x < r.x : l.side < r.side;
+                  });
+    }
+
+    /// Whether all crossings as near as the first are known, and it alone is that near: those
+    /// within rounding of each other can be in any order.
+    bool nearest_tells(double x) const {
+        if (crossings_.empty()) return false;
+        const Bounds& box = tin_.bounds();
+        const double largest = std::max(std::fabs(box.min.x), std::fabs(box.max.x));
+        const double clear = crossings_.front().x + 64.0 * ulp(largest);
+        return clear < x && (crossings_.size() == 1 || clear < crossings_[1].x);
+    }
+
+    /// Whether the mesh is on the west of the boundary side, which the ray crosses: it is on its
+    /// left.
+    bool is_way_in(Side side) const { return tin_.plan(tin_.origin(side)).y <= p_.y; }
+
+    /// From the nearest crossing back along the ray. Rounding can misplace crossings within a few
+    /// ulps of each other, so a walk that runs out of the mesh leaves its turn to the next.
+    Location walk_back() const {
+        for (const RayCrossing& crossing : crossings_) {
+            Side exit = crossing.side;
+            while (exit.valid()) {
+                const Location here = locate_in(tin_, exit.triangle(), p_);
+                if (here.kind != Location::Kind::Outside) return here;
+                // On through the other side that the ray crosses: vertices at its height are below.
+                const bool apex_above = tin_.plan(tin_.apex(exit)).y > p_.y;
+                const bool origin_above = tin_.plan(tin_.origin(exit)).y > p_.y;
+                exit = tin_.twin(apex_above == origin_above ? exit.next() : exit.previous());
+            }
+        }
+        return {};
+    }
+
+    const Tin& tin_;
+    Point2 p_;
+    std::vector<RayCrossing> crossings_;
+    Location found_;
+};
 
 }  // namespace
 
@@ -150,20 +196,53 @@ Side side_from(const Tin& tin, TriangleId t, VertexId v) {
     return {t, vertices[0] == v ? 0U : vertices[1] == v ? 1U : 2U};
 }
 
+namespace {
+
+/// Turns around a vertex, counter-clockwise to the border or once around, then clockwise from the
+/// start to the border's other side. At each stop looks at a triangle's two sides at the vertex.
+class Turn {
+  public:
+    Turn(const Tin& tin, VertexId v) : tin_(tin), start_(side_from(tin, v)), at_(start_) {}
+
+    bool ended() const { return !at_.valid(); }
+    /// The side that joins the vertex and w, of the triangle it looks at; invalid for none.
+    Side joining(VertexId w) const {
+        if (tin_.destination(at_) == w) return at_;
+        return tin_.apex(at_) == w ? at_.previous() : Side{};
+    }
+    void step() {
+        if (!clockwise_) {
+            at_ = tin_.twin(at_.previous());
+            if (at_ == start_)
+                at_ = {};
+            else if (!at_.valid()) {
+                clockwise_ = true;
+                at_ = start_;
+            } else
+                return;
+            if (!at_.valid()) return;
+        }
+        at_ = tin_.twin(at_);
+        if (at_.valid()) at_ = at_.next();
+    }
+
+  private:
+    const Tin& tin_;
+    Side start_;
+    Side at_;
+    bool clockwise_ = false;
+};
+
+}  // namespace
+
 Side find_edge(const Tin& tin, VertexId v, VertexId w) {
-    const Side start = side_from(tin, v);
-    Side s = start;
-    do {  // counter-clockwise
-        if (tin.destination(s) == w) return s;
-        if (tin.apex(s) == w) return s.previous();
-        s = tin.twin(s.previous());
-    } while (s.valid() && s != start);
-    if (s.valid()) return {};
-    s = tin.twin(start);  // the rest of an open fan, clockwise
-    while (s.valid()) {
-        s = s.next();
-        if (tin.destination(s) == w) return s;
-        s = tin.twin(s);
+    // From both ends in turn: an edge may join a vertex of three triangles to one of thousands.
+    Turn at_v(tin, v), at_w(tin, w);
+    while (!at_v.ended() && !at_w.ended()) {
+        if (const Side side = at_v.joining(w); side.valid()) return side;
+        if (const Side side = at_w.joining(v); side.valid()) return side;
+        at_v.step();
+        at_w.step();
     }
     return {};
 }
@@ -219,7 +298,7 @@ Location locate(const Tin& tin, Point2 p, TriangleId seed) {
         const StraightWalk walk = walk_straight(tin, tin.triangle(seed).vertices[0], p);
         if (walk.arrived) return canonical(tin, walk.location);
     }
-    return canonical(tin, locate_from_boundary(tin, p));
+    return canonical(tin, BoundaryLook(tin, p).locate());
 }
 
 }  // namespace tinsmith::core

@@ -15,7 +15,7 @@ inline Side side_from(const Tin& tin, VertexId v) {
     return side_from(tin, tin.vertex(v).triangle, v);
 }
 /// A side of the edge that joins v and w, in either direction; invalid where none does.
-/// Cost: v's degree.
+/// Cost: the lower of their degrees.
 Side find_edge(const Tin& tin, VertexId v, VertexId w);
 /// The boundary side that starts at v; invalid where v is inside the mesh.
 Side boundary_side_from(const Tin& tin, VertexId v);

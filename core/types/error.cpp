@@ -51,6 +51,8 @@ std::string_view code_name(ErrorCode code) {
             return "CANCELLED";
         case ErrorCode::StepBudget:
             return "STEP_BUDGET";
+        case ErrorCode::IdBudget:
+            return "ID_BUDGET";
     }
     return "UNKNOWN";
 }

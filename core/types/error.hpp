@@ -41,6 +41,7 @@ enum class ErrorCode {
     TriangleBudget = 502,  ///< more new triangles than allowed
     Cancelled = 503,       ///< the caller's cancel callback said stop
     StepBudget = 504,      ///< a loop used up its budget: a defect of ours, never the caller's
+    IdBudget = 505,        ///< no number is left for another vertex, triangle or facet
 };
 
 /// The word for a code on the wire, in logs and in tests: "RING_TOO_SHORT".

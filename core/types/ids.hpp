@@ -57,5 +57,14 @@ struct Side {
 /// Ids leave room for the side's two bits and for the invalid value.
 inline constexpr std::size_t kMaxTriangles = (std::size_t{1} << 30) - 1;
 inline constexpr std::size_t kMaxVertices = (std::size_t{1} << 32) - 2;
+inline constexpr std::size_t kMaxFacets = (std::size_t{1} << 32) - 2;
+
+/// How many ids of each kind a mesh may use up. Facets are never used again, so a mesh that is
+/// edited for long enough comes to their end.
+struct IdLimits {
+    std::size_t vertices = kMaxVertices;
+    std::size_t triangles = kMaxTriangles;
+    std::size_t facets = kMaxFacets;
+};
 
 }  // namespace tinsmith::core

@@ -10,6 +10,7 @@
 //   posts     where moved: a byte each, row by row
 //   cells     a byte each: % 5 == 0 is missing, else the last bit turns the diagonal
 //   requests  until the bytes end, see `make_request`
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>

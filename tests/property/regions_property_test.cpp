@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Regions on random meshes and shapes of every kind: each triangle is asked on its own whether its
 // centroid is inside the input, in quadruple precision and without any code of the core.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>

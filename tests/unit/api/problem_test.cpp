@@ -68,7 +68,8 @@ TEST(ProblemOfErrors, KnowsEveryCodeOfTheCore) {
           ErrorCode::VertexIndexOutOfRange, ErrorCode::TriangleFlat, ErrorCode::EdgeNotManifold,
           ErrorCode::VertexUnused, ErrorCode::RingTooShort, ErrorCode::LineTooShort,
           ErrorCode::ShapeEmpty, ErrorCode::OutsideMesh, ErrorCode::LeavesMesh,
-          ErrorCode::NotRepresentable, ErrorCode::CrossingBudget, ErrorCode::TriangleBudget}) {
+          ErrorCode::NotRepresentable, ErrorCode::CrossingBudget, ErrorCode::TriangleBudget,
+          ErrorCode::IdBudget}) {
         EXPECT_EQ(status(code), 422) << core::code_name(code);
     }
     EXPECT_EQ(status(ErrorCode::MeshTooLarge), 413);

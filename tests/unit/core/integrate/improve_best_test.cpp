@@ -259,9 +259,9 @@ TEST(ImproveBest, OfFourOnOneCircleTheBetterDiagonalComes) {
                                         {-25, 0}, {-20, -15}, {-15, -20}, {0, -25},  {20, -15}};
     std::mt19937_64 random(6);
     for (int trial = 0; trial < 200; ++trial) {
-        std::vector<Point2> four = circle;
-        std::shuffle(four.begin(), four.end(), random);
-        four.resize(4);
+        std::vector<Point2> shuffled = circle;
+        std::shuffle(shuffled.begin(), shuffled.end(), random);
+        const std::vector<Point2> four(shuffled.begin(), shuffled.begin() + 4);
         ASSERT_TRUE(judge(facet(60.0, 0.0, 0.0), {points(four)}).best) << "trial " << trial;
     }
 }

@@ -196,5 +196,75 @@ TEST(BoundaryIndex, NamesFewEdgesHoweverOftenOneIsSplit) {
     }
 }
 
+TEST(BoundaryIndex, NamesFewEdgesAtAPlaceHoweverUnevenlyTheyLie) {
+    // All in one straight line; in a corner of a large box; side by side and long.
+    for (const int way : {0, 1, 2}) {
+        constexpr std::uint32_t kEdges = 20000;
+        const double size = way == 1 ? 1e6 : 1.0;
+        BoundaryIndex index({0, 0}, {kEdges * size, kEdges * size}, kEdges);
+        std::vector<Edge> edges;
+        for (std::uint32_t i = 0; i < kEdges; ++i) {
+            const double x = i;
+            edges.push_back(way == 2 ? Edge{{x, 0}, {x + 0.5, kEdges}} : Edge{{x, 1}, {x + 1, 1}});
+            index.add({i}, edges[i].p, edges[i].q);
+        }
+        std::size_t most = 0;
+        for (std::uint32_t i = 0; i < kEdges; i += 97) {
+            const Point2 at = edges[i].p;
+            const auto found = index.near({at.x, at.y - 0.5}, {at.x, at.y + 0.5});
+            EXPECT_TRUE(std::binary_search(found.begin(), found.end(), VertexId{i}));
+            most = std::max(most, found.size());
+        }
+        EXPECT_LT(most, 64u) << way;
+        EXPECT_LT(index.memory_bytes(), std::size_t{1000} * kEdges) << way;
+    }
+}
+
+TEST(BoundaryIndex, NamesEveryEdgeWithinTheMargin) {
+    Points points({0, 0}, {10, 10}, 11);
+    std::vector<Edge> edges;
+    for (int i = 0; i < 3000; ++i) {
+        const Point2 p = points.point(0.0);
+        edges.push_back({p, {std::min(p.x + 0.01, 10.0), std::min(p.y + 0.02, 10.0)}});
+    }
+    const BoundaryIndex index = index_of(edges, {0, 0}, {10, 10});
+    for (int i = 0; i < 500; ++i) {
+        const Point2 p = points.point(0.1);
+        const double margin = points.number(0.0, 1.0);
+        const auto found = index.near(p, p, margin);
+        for (std::uint32_t e = 0; e < edges.size(); ++e) {
+            const double away =
+                std::max(std::fabs(edges[e].p.x - p.x), std::fabs(edges[e].p.y - p.y));
+            ASSERT_TRUE(away > margin ||
+                        std::binary_search(found.begin(), found.end(), VertexId{e}));
+        }
+    }
+}
+
+TEST(BoundaryIndex, IsAsItWasOnceManyChangesAreTakenBack) {
+    Points points({0, 0}, {10, 10}, 12);
+    BoundaryIndex index({0, 0}, {10, 10}, 40);
+    std::vector<std::pair<std::size_t, std::vector<std::vector<VertexId>>>> known;
+    const auto ask = [&index] {
+        std::vector<std::vector<VertexId>> all;
+        for (double x = 0.0; x < 10.0; x += 0.7)
+            for (double y = 0.0; y < 10.0; y += 0.7)
+                all.push_back(index.near({x, y}, {x + 0.1, y + 0.2}));
+        return all;
+    };
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+        if (i % 100 == 0) known.emplace_back(index.changes(), ask());
+        const Point2 p = points.point(0.0), q = points.point(0.0);
+        const Point2 near{p.x + (q.x - p.x) / 64, p.y + (q.y - p.y) / 64};
+        index.add({2 * i}, p, near);
+        index.add_split({2 * i}, p, {2 * i + 1}, {(p.x + near.x) / 2, (p.y + near.y) / 2}, near);
+    }
+    for (auto step = known.rbegin(); step != known.rend(); ++step) {
+        index.take_back(step->first);
+        ASSERT_EQ(ask(), step->second) << step->first;
+    }
+    EXPECT_EQ(index.changes(), 0u);
+}
+
 }  // namespace
 }  // namespace tinsmith

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mesh/walk.hpp"
 
+#include <cmath>
 #include <map>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "core/predicates/orientation.hpp"
+#include "tests/support/border_shapes.hpp"
 #include "tests/support/quad.hpp"
 #include "tests/support/random_input.hpp"
 #include "tests/unit/core/fixtures.hpp"
@@ -187,6 +189,45 @@ TEST(FindEdge, FindsEveryEdgeAndNoOther) {
             if (!side.valid()) continue;
             ASSERT_EQ(std::minmax(tin.origin(side).value, tin.destination(side).value),
                       std::minmax(v, w));
+        }
+    }
+}
+
+TEST(FindEdge, FindsEveryEdgeOfAHubFromEitherEnd) {
+    for (const bool closed : {true, false}) {
+        constexpr std::uint32_t kRim = 200;
+        MeshData mesh{{{0, 0, 0}}, {}, {}};
+        for (std::uint32_t i = 0; i < kRim; ++i)
+            mesh.vertices.push_back({std::cos(i * 0.03), std::sin(i * 0.03), 0});
+        for (std::uint32_t i = 1; i < kRim; ++i)
+            mesh.triangles.push_back({0, i, i + 1});
+        if (closed) mesh.triangles.push_back({0, kRim, 1});
+        const Tin tin = test::built(mesh);
+        for (std::uint32_t v = 1; v <= kRim; ++v) {
+            for (const auto& [from, to] : {std::pair{0U, v}, std::pair{v, 0U}}) {
+                const Side side = find_edge(tin, {from}, {to});
+                ASSERT_TRUE(side.valid());
+                ASSERT_EQ(std::minmax(tin.origin(side).value, tin.destination(side).value),
+                          std::minmax(from, to));
+            }
+            ASSERT_EQ(find_edge(tin, {v}, {v % kRim + 1}).valid(), closed || v < kRim);
+            ASSERT_FALSE(find_edge(tin, {v}, {(v + 1) % kRim + 1}).valid());
+        }
+    }
+}
+
+TEST(Locate, FindsEveryPlaceAmongHolesAndTouchingComponents) {
+    for (const test::BorderShape& shape : test::border_shapes()) {
+        const Tin tin = test::built(shape.make(30).mesh);
+        const Bounds& box = tin.bounds();
+        for (int i = 0; i < 400; ++i) {
+            const Point2 p{box.min.x + (box.max.x - box.min.x) * (i % 20 + 0.5) / 19.0,
+                           box.min.y + (box.max.y - box.min.y) * (i / 20 - 0.5) / 18.0};
+            const Location expected = brute_locate(tin, p);
+            const Location found = locate(tin, p, tin.hint(p));
+            ASSERT_EQ(found.kind, expected.kind) << shape.name << " " << p.x << " " << p.y;
+            ASSERT_EQ(found.side, expected.side) << shape.name << " " << p.x << " " << p.y;
+            ASSERT_EQ(found.vertex, expected.vertex) << shape.name << " " << p.x << " " << p.y;
         }
     }
 }

@@ -23,7 +23,7 @@ constexpr ErrorCode kCodes[] = {
     ErrorCode::LeavesMesh,          ErrorCode::NotRepresentable,
     ErrorCode::CrossingBudget,      ErrorCode::TriangleBudget,
     ErrorCode::Cancelled,           ErrorCode::StepBudget,
-    ErrorCode::NoEdgeAlong,
+    ErrorCode::NoEdgeAlong,         ErrorCode::IdBudget,
 };
 
 TEST(ErrorCode, EachHasAWordOfItsOwn) {
