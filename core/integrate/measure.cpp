@@ -61,6 +61,21 @@ class Lowest {
     std::vector<double> values_;
 };
 
+/// Two doubles in one register: east and north take the same steps.
+typedef double Pair __attribute__((vector_size(16)));  // NOLINT(modernize-use-using): GCC 12
+inline Pair plan_of(const Tin::Vertex& v) {
+    return Pair{v.x, v.y};
+}
+inline double sum_of(Pair p) {
+    return p[0] + p[1];
+}
+
+/// How far off a glance may be.
+constexpr double kMargin = 1.01;
+/// Rounding is below 2^-50 of the squared edges: below a thousandth of the area where the squared
+/// sine of the smallest angle is as large as this.
+constexpr double kLeast = 0x1p-78;
+
 /// What a triangle is like, at a glance: right to a hundredth, which is enough to pass over most.
 class Glance {
   public:
@@ -80,8 +95,6 @@ class Glance {
 
     /// Never true where `TriangleShape::has_angle_below` is.
     bool is_blunter_than(double bound) const {
-        // Rounding is below 2^-50 of `half`: below a thousandth of nz for angles as large as that.
-        constexpr double kLeast = 0x1p-78;
         return upright_squared_ > kMargin * std::max(bound, kLeast) * longest_squared_;
     }
     /// Never true where `TriangleShape::is_steeper_than` is. Requires: not a needle, see above.
@@ -90,15 +103,33 @@ class Glance {
     }
 
   private:
-    /// Two doubles in one register: east and north take the same steps.
-    typedef double Pair __attribute__((vector_size(16)));  // NOLINT(modernize-use-using): GCC 12
-    static Pair plan_of(const Tin::Vertex& v) { return Pair{v.x, v.y}; }
-    static double sum_of(Pair p) { return p[0] + p[1]; }
-
-    static constexpr double kMargin = 1.01;
     double level_squared_;    ///< of the normal that is as long as twice the area
     double upright_squared_;  ///< of its vertical part
     double longest_squared_;  ///< no less than the product of the two longest edges, squared
+};
+
+/// The same in plan alone. On a plane of slope s all lengths are at most sqrt(1 + s^2) times what
+/// they are in plan, and areas are just that: the sine of the smallest angle, squared, is no less
+/// than that in plan by 1 + s^2.
+class PlanGlance {
+  public:
+    PlanGlance(const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c) {
+        const Pair origin = plan_of(a);
+        const Pair u = plan_of(b) - origin, v = plan_of(c) - origin;
+        const Pair cross = u * Pair{v[1], v[0]};
+        const double area = cross[0] - cross[1];
+        area_squared_ = area * area;
+        const double half = sum_of(u * u + v * v - u * v);
+        longest_squared_ = half * half;
+    }
+
+    bool is_blunter_than(double bound) const {
+        return area_squared_ > kMargin * std::max(bound, kLeast) * longest_squared_;
+    }
+
+  private:
+    double area_squared_;
+    double longest_squared_;
 };
 
 /// Whether only a neighbour's link changed. One comparison, for nobody can guess each of four.
@@ -140,6 +171,7 @@ Measurement measure_operation(const Tin& tin, const Touched& touched) {
     Lowest before(most);
     Lowest after(most);
     double steepest = 0.0;  // squared
+    VertexId newest{0};     // corner of an old triangle
     // Vertices keep their slots and plan positions: the old triangle is there but for elevations.
     const auto moved = moved_vertices(tin, march);
     const auto corner_before = [&](VertexId v) {
@@ -169,6 +201,7 @@ Measurement measure_operation(const Tin& tin, const Touched& touched) {
         const Tin::Triangle& now = tin.triangle(id);
         if (is_same_piece(old, now)) return;
         const auto& [a, b, c] = old.vertices;
+        newest = std::max({newest, a, b, c});
         if (moved.empty())
             add_before(tin.vertex(a), tin.vertex(b), tin.vertex(c));
         else
@@ -179,8 +212,18 @@ Measurement measure_operation(const Tin& tin, const Touched& touched) {
         fetch_ahead(tin, march, i);
         add(march.triangles[i].first, march.triangles[i].second);
     }
-    for (std::size_t t = march.triangle_count; t < touched.triangle_end; ++t)
-        add_after(tin.triangle({static_cast<std::uint32_t>(t)}));
+    // New triangles lie in the old facets, where nothing was moved up or down: none is steeper.
+    const double stretch = 1.01 * (1.0 + steepest);
+    const bool is_flat_enough = moved.empty() && touched.across == nullptr;
+    for (std::size_t t = march.triangle_count; t < touched.triangle_end; ++t) {
+        const Tin::Triangle& triangle = tin.triangle({static_cast<std::uint32_t>(t)});
+        const auto& [a, b, c] = triangle.vertices;
+        if (is_flat_enough && PlanGlance(tin.vertex(a), tin.vertex(b), tin.vertex(c))
+                                  .is_blunter_than(stretch * after.bound()))
+            after.pass_over();
+        else
+            add_after(triangle);
+    }
     if (touched.across != nullptr) {
         std::vector<TriangleId> known;
         for (const auto& [id, old] : march.triangles)
@@ -194,6 +237,7 @@ Measurement measure_operation(const Tin& tin, const Touched& touched) {
 
     Measurement result;
     result.steepest_slope = std::sqrt(steepest);
+    result.met_divided_facets = newest.index() >= tin.built_vertex_count();
     result.smallest_angle_deg = {angle_degrees(before.least()), angle_degrees(after.least()),
                                  angle_degrees(before.percentile()),
                                  angle_degrees(after.percentile())};

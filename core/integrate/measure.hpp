@@ -10,6 +10,8 @@ namespace tinsmith::core {
 struct Measurement {
     AngleSummary smallest_angle_deg;
     double steepest_slope = 0.0;  ///< of the touched triangles as they were
+    /// Whether any of them shared its facet with others, made by an operation before.
+    bool met_divided_facets = false;
 };
 
 /// The records of one shape: of its march, and of swaps across facets that followed it, if any.

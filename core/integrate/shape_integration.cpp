@@ -15,14 +15,6 @@ namespace {
 /// Rounding of one interpolated elevation, in ulps of the largest.
 constexpr double kInterpolationUlps = 4.0;
 
-/// Whether the operation met a facet of several triangles.
-bool met_divided_facets(const Tin& tin, const UndoRecord& record) {
-    return std::any_of(record.triangles.begin(), record.triangles.end(), [&](const auto& entry) {
-        return std::any_of(entry.second.vertices.begin(), entry.second.vertices.end(),
-                           [&](VertexId v) { return v.index() >= tin.built_vertex_count(); });
-    });
-}
-
 }  // namespace
 
 bool ShapeIntegration::run(const Shape& shape) {
@@ -124,7 +116,7 @@ ShapeReport ShapeIntegration::report() {
     const Measurement measured = measure_operation(tin, {record, tin.triangle_count()});
     report.smallest_angle_deg = measured.smallest_angle_deg;
     if (report.vertices_added > 0 || report.edges_swapped > 0)
-        report.max_vertical_deviation = certify(measured.steepest_slope);
+        report.max_vertical_deviation = certify(measured);
     return report;
 }
 
@@ -133,13 +125,13 @@ ShapeReport ShapeIntegration::report() {
 /// elevation is rounded, once more each time that it is interpolated from vertices of the same
 /// request. Facets that had several triangles before were off their planes already:
 /// the surface there may move by what it was off and what it is.
-double ShapeIntegration::certify(double steepest_slope) {
+double ShapeIntegration::certify(const Measurement& measured) {
     const Tin& tin = surgery_.tin();
     const Bounds& box = tin.bounds();
     const double height = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
-    const double added = 2.0 * steepest_slope * march_.largest_bend() +
+    const double added = 2.0 * measured.steepest_slope * march_.largest_bend() +
                          kInterpolationUlps * (1.0 + drift_.deepest()) * ulp(height);
-    const double before = met_divided_facets(tin, surgery_.record()) ? tin.facet_error() : 0.0;
+    const double before = measured.met_divided_facets ? tin.facet_error() : 0.0;
     surgery_.raise_facet_error(before + added);
     return before + (before + added);
 }

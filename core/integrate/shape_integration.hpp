@@ -5,6 +5,7 @@
 
 #include "core/integrate/improve.hpp"
 #include "core/integrate/march.hpp"
+#include "core/integrate/measure.hpp"
 #include "core/integrate/stopwatch.hpp"
 #include "core/mesh/surgery.hpp"
 
@@ -41,7 +42,7 @@ class ShapeIntegration {
     bool run(std::size_t index, const Path& path);
     void improve(std::size_t waiting);
     bool set_elevations();
-    double certify(double steepest_slope);
+    double certify(const Measurement& measured);
 
     Surgery& surgery_;
     const IntegrateOptions& options_;
