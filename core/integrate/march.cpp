@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/mesh/surface.hpp"
 #include "core/predicates/orientation.hpp"
@@ -43,6 +44,7 @@ void March::set_snap(double snap) {
 bool March::begin(std::size_t index, const Path& path) {
     path_ = &path;
     path_index_ = index;
+    exit_ahead_ = {};
     from_ = to_ = 0;
     const Point2 start = path.points.front();
     start_ = end_ = start;
@@ -74,6 +76,7 @@ bool March::advance(std::size_t to) {
     to_ = to;
     ++tally_.segments;
     set_segment(end_, path_->points[to]);
+    if (ahead_ != end_) exit_ahead_ = {};
     ahead_ = path_->points[to + 1 < path_->points.size() ? to + 1 : 0];
     fetch_path();
     bool done = march_to_end();
@@ -95,6 +98,7 @@ bool March::march_home() {
     const Point2 home = first_.valid() ? tin_.plan(first_) : path_->points.front();
     if (tin_.plan(at_) == home) return true;
     set_snap(0.0);
+    exit_ahead_ = {};
     set_segment(tin_.plan(at_), home);
     from_ = to_;
     const bool done = march_to_end();
@@ -123,7 +127,8 @@ bool March::march_to_end() {
             return is_as_promised();
         }
         if (!within_budget()) return false;
-        const Departure departure = leave(tin_, at_, end_, first_look());
+        Departure departure{Departure::Kind::ThroughEdge, std::exchange(exit_ahead_, {})};
+        if (!departure.side.valid()) departure = leave(tin_, at_, end_, first_look());
         switch (departure.kind) {
             case Departure::Kind::AlongEdge:
                 if (!follow(departure)) return false;

@@ -84,8 +84,12 @@ class March {
     /// How far any vertex may be, in plan, off the edge between facets that it was put on.
     double largest_bend() const;
     /// Vertices whose surroundings changed, but for those where the improver has seen to that; the
-    /// caller clears them once it has. Complete once the path is finished.
-    std::vector<VertexId>& changed() { return changed_; }
+    /// caller swaps what it will and clears them. Complete once the path is finished.
+    std::vector<VertexId>& changed() {
+        exit_ahead_ = {};  // its triangle may be swapped
+        return changed_;
+    }
+    bool has_changed(std::size_t vertices) const { return changed_.size() >= vertices; }
     /// Elevations that the paths bring, in order; the mesh has those of its surface until they are
     /// set.
     const std::vector<OwnElevation>& own_elevations() const { return own_elevations_; }
@@ -227,8 +231,9 @@ class March {
     VertexId at_;     ///< where the march stands; invalid: outside the mesh
     Point2 start_;    ///< the input segment
     Point2 end_;
-    Point2 ahead_;   ///< where the path goes on from its end
-    VertexId open_;  ///< the end of a plain step, all around it improved but for two triangles
+    Point2 ahead_;     ///< where the path goes on from its end
+    Side exit_ahead_;  ///< the edge that the way there goes through, if a plain step has seen it
+    VertexId open_;    ///< the end of a plain step, all around it improved but for two triangles
     TriangleId open_entered_;
     TriangleId open_other_;
     double length_ = 0.0;

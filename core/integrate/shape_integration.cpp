@@ -54,8 +54,8 @@ bool ShapeIntegration::run(std::size_t index, const Path& path) {
 /// and in the cache, seldom enough that the clock costs nothing. Swaps across facets wait until all
 /// the request is in the mesh.
 void ShapeIntegration::improve(std::size_t waiting) {
+    if (!march_.has_changed(std::max<std::size_t>(waiting, 1))) return;
     std::vector<VertexId>& changed = march_.changed();
-    if (changed.empty() || changed.size() < waiting) return;
     if (options_.improve != Improve::None) {
         watch_.lap(times_.integrate);
         improver_.improve(changed);

@@ -166,11 +166,11 @@ bool March::stride(Side& exit) {
 [[gnu::always_inline]] inline Side March::pass(const Passing& here, Point2 p) {
     const Point2 a = here.a.plan(), b = here.b.plan(), d = here.d.plan();
     const bool is_end = p == end_;
-    const Orientation turn = orientation(p, is_end ? ahead_ : end_, d);
+    const Point2 target = is_end ? ahead_ : end_;
+    const Orientation turn = orientation(p, target, d);
     const bool past_a = turn != Clockwise;
-    const bool goes_on =
-        !is_end && (past_a ? turn == CounterClockwise && orientation(p, end_, a) == Clockwise
-                           : orientation(p, end_, b) == CounterClockwise);
+    const bool goes_on = past_a ? turn == CounterClockwise && orientation(p, target, a) == Clockwise
+                                : orientation(p, target, b) == CounterClockwise;
     fetch_apex(past_a ? here.across.next() : here.across.previous());
     const Seam seam = seam_of(here);
     if (open_ == at_ && !seam.covers_open) flush_open();
@@ -191,7 +191,10 @@ bool March::stride(Side& exit) {
     close(seam, other, entered);
     const Side way_on(entered, past_a ? 0U : 1U);
     way_on_ = way_on;
-    return goes_on ? way_on.next() : Side{};
+    const Side exit = goes_on ? way_on.next() : Side{};
+    if (!is_end) return exit;
+    exit_ahead_ = exit;
+    return {};
 }
 
 /// What the split leaves to improve, which is known while the triangles are at hand: where facets
