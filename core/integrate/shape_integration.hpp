@@ -6,6 +6,7 @@
 #include "core/integrate/improve.hpp"
 #include "core/integrate/march.hpp"
 #include "core/integrate/stopwatch.hpp"
+#include "core/integrate/way.hpp"
 #include "core/mesh/surgery.hpp"
 
 namespace tinsmith::core {
@@ -25,10 +26,11 @@ class ShapeIntegration {
           improver_(surgery) {}
 
     /// False: stopped, see `error`.
-    bool run(const Shape& shape);
+    bool run(const Shape& shape, std::size_t index, const Ways& ways);
 
     const Error& error() { return *march_.error(); }
     const MarchTally& tally() const { return march_.tally(); }
+    bool is_delicate() const { return march_.is_delicate(); }
     /// Vertices whose surroundings the march changed; kept for swaps across facets only.
     std::vector<VertexId>& changed() { return changed_; }
     /// Vertices whose elevation the shape set, in order.
@@ -37,7 +39,8 @@ class ShapeIntegration {
     ShapeReport report();
 
   private:
-    bool run(std::size_t index, const Path& path);
+    bool run(std::size_t index, const Path& path, const Way& way);
+    bool run_reversed(std::size_t index, const Path& path, const Way& way);
     void improve(std::size_t waiting);
     void set_elevations();
     double certify(double steepest_slope);
