@@ -40,6 +40,7 @@ bool March::connect(VertexId t) {
             if (std::find(targets.begin(), targets.end(), *next) != targets.end() || *next == at_)
                 return fail(ErrorCode::NotRepresentable, kNoWay);
             targets.push_back(*next);
+            is_delicate_ = true;
             continue;
         }
         if (!clear_corridor(*next)) return false;
@@ -115,7 +116,10 @@ Side March::edge_on_way(double limit) const {
 Side March::detour(double limit) {
     if (detours_.contains(at_)) return {};
     const Side edge = edge_on_way(limit);
-    if (edge.valid()) detours_.insert(at_);
+    if (edge.valid()) {
+        detours_.insert(at_);
+        is_delicate_ = true;
+    }
     return edge;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/integrate/distance.hpp"
 #include "core/integrate/march.hpp"
 #include "core/mesh/surface.hpp"
 #include "core/predicates/orientation.hpp"
@@ -18,15 +19,6 @@ bool is_before(Point2 p, Point2 q) {
     return p.x != q.x ? p.x < q.x : p.y < q.y;
 }
 
-double distance_to_segment(Point2 p, Point2 a, Point2 b) {
-    const double dx = b.x - a.x, dy = b.y - a.y;
-    const double ahead = (p.x - a.x) * dx + (p.y - a.y) * dy;
-    const double squared = dx * dx + dy * dy;
-    if (ahead <= 0.0) return std::sqrt((p.x - a.x) * (p.x - a.x) + (p.y - a.y) * (p.y - a.y));
-    if (ahead >= squared) return std::sqrt((p.x - b.x) * (p.x - b.x) + (p.y - b.y) * (p.y - b.y));
-    return std::fabs(compensated_doubled_area(a, b, p)) / std::sqrt(squared);
-}
-
 }  // namespace
 
 /// `exit` is a -> b with a on the right of the way and b on the left, both strictly, and the end
@@ -35,15 +27,21 @@ double distance_to_segment(Point2 p, Point2 a, Point2 b) {
 /// vertex where the march stands, or the segment's end, is when it is on the edge. Otherwise the
 /// edge is split where the input segment crosses it, or at a neighbouring double.
 bool March::cross_facet_edge(Side exit, bool needs_swaps) {
-    const VertexId a = tin_.origin(exit);
-    const VertexId b = tin_.destination(exit);
-    const double rounding = reach_of_rounding_ / 2.0;
+    const double rounding = reach_of_rounding_ * way_.edge_nearness;
     // Beyond edges to be swapped, rounding may have bent the outline into the straight way there.
     const std::optional<VertexId> met = end_within(exit, near_);
     if (met && (!needs_swaps || has_way(*met))) return connect(*met);
-    if (tin_.apex(exit) == at_ && can_absorb(exit, rounding)) return absorb(exit);
-    if (is_near_edge(exit, end_, rounding) && can_bend(exit, end_) && can_split(exit, end_))
-        return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
+    if (way_.absorbs_early && tin_.apex(exit) == at_ && can_absorb(exit, rounding))
+        return absorb(exit);
+    if (is_near_edge(exit, end_, reach_of_rounding_)) {
+        if (is_near_edge(exit, end_, rounding) && can_bend(exit, end_) && can_split(exit, end_))
+            return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
+        is_delicate_ = true;
+    }
+    if (!tin_.twin(exit).valid() && !needs_swaps && is_near_edge(exit, tin_.plan(at_), rounding))
+        return leave_across(exit);
+    if (way_.goes_beside)
+        if (const std::optional<VertexId> end = end_beside(exit)) return connect(*end);
     if (const std::optional<Point2> p = find_split(exit)) {
         count_crossing(exit);
         const VertexId v = place_on(exit, *p);
@@ -52,16 +50,14 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
         step_along(exit.next(), v);
         return true;
     }
-    // Only rounding can forbid the split: a triangle beside the edge is a needle, whose middle
-    // vertex goes onto its long side; or whatever else is within reach.
+    is_delicate_ = true;
+    // Only rounding can forbid the split: a triangle beside the edge is a needle. There is room
+    // beyond it; or its middle vertex goes onto its long side; or whatever else is within reach.
+    if (way_.splits_beyond && split_beyond(tin_.twin(exit))) return true;
     if (absorb_needle_at(exit)) return true;
     if (!tin_.twin(exit).valid() && !needs_swaps &&
-        is_near_edge(exit, tin_.plan(at_), reach_of_rounding_)) {
-        leave_mesh();
-        boundary_visits_.insert(a);
-        boundary_visits_.insert(b);
-        return true;
-    }
+        is_near_edge(exit, tin_.plan(at_), reach_of_rounding_))
+        return leave_across(exit);
     if (is_near_edge(exit, end_, reach_of_rounding_) && can_split(exit, end_))
         return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
     if (const std::optional<VertexId> end = end_within(exit, reach_of_rounding_))
@@ -71,13 +67,25 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
                 "no mesh of doubles holds this segment within rounding; move it a little");
 }
 
+/// Leaves the mesh through a boundary edge that the march stands on to within rounding.
+bool March::leave_across(Side edge) {
+    is_delicate_ = true;
+    const VertexId a = tin_.origin(edge), b = tin_.destination(edge);
+    leave_mesh();
+    boundary_visits_.insert(a);
+    boundary_visits_.insert(b);
+    return true;
+}
+
 /// The input segment's point on the edge, or a neighbour of it, that leaves all triangles strictly
 /// positive.
-std::optional<Point2> March::find_split(Side edge) const {
+std::optional<Point2> March::find_split(Side edge) {
     const Point2 p = intersection(edge);
     if (can_split(edge, p)) return p;
+    is_delicate_ = true;
     std::optional<Point2> best;
-    double best_distance = reach_of_rounding_;
+    // Where a snap put the march beside the segment the way to its end is as far from it.
+    double best_distance = std::max(options_.snap, reach_of_rounding_);
     for (const double x : {p.x, neighbour(p.x, false), neighbour(p.x, true)}) {
         for (const double y : {p.y, neighbour(p.y, false), neighbour(p.y, true)}) {
             const Point2 q{x, y};
@@ -88,7 +96,7 @@ std::optional<Point2> March::find_split(Side edge) const {
             }
         }
     }
-    return best ? best : find_split_along(edge, p);
+    return best || !way_.splits_along ? best : find_split_along(edge, p);
 }
 
 /// Where triangles beside the edge are too narrow at p for any double: the next place along the
@@ -104,7 +112,8 @@ std::optional<Point2> March::find_split_along(Side edge, Point2 p) const {
     for (double step = reach_of_rounding_; step < length; step *= 2.0) {
         const Point2 q{p.x + (far.x - p.x) * (step / length),
                        p.y + (far.y - p.y) * (step / length)};
-        if (distance_to_segment(q, start_, end_) > reach_of_rounding_) return {};
+        if (distance_to_segment(q, start_, end_) > std::max(options_.snap, reach_of_rounding_))
+            return {};
         if (at_.valid() && along(q) <= along(tin_.plan(at_))) return {};
         if (can_split(edge, q)) return q;
     }
@@ -114,25 +123,32 @@ std::optional<Point2> March::find_split_along(Side edge, Point2 p) const {
 /// Where the input segment crosses the edge. A vertex that rounding or a snap put beside the
 /// segment may stand before an edge that the segment misses or crosses farther back: from there,
 /// where the straight way to its end does, which is no farther from the segment than the vertex is.
-Point2 March::intersection(Side edge) const {
+Point2 March::intersection(Side edge) {
     const Point2 a = tin_.plan(tin_.origin(edge));
     const Point2 b = tin_.plan(tin_.destination(edge));
-    if (!at_.valid() || tin_.plan(at_) == start_) return crossing_of(start_, end_, a, b);
+    if (!at_.valid() || tin_.plan(at_) == start_) {
+        if (is_near_edge(edge, start_, reach_of_rounding_)) is_delicate_ = true;
+        return crossing_of(start_, end_, a, b);
+    }
     const Point2 here = tin_.plan(at_);
     const bool misses =
         options_.snap > 0.0 && orientation(start_, end_, a) == orientation(start_, end_, b);
     const Point2 p = misses ? here : crossing_of(start_, end_, a, b);
     const double at = along(p);
     const bool is_on_way = !misses && at > along(here) && at <= along(end_);
-    return is_on_way ? p : crossing_of(here, end_, a, b);
+    if (is_on_way) return p;
+    is_delicate_ = true;
+    return crossing_of(here, end_, a, b);
 }
 
 /// Where two segments that cross do, rounded once: off by an ulp or so in each coordinate. The same
 /// bits in whichever direction either is given.
-Point2 March::crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) const {
+Point2 March::crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) {
     if (is_before(high, low)) std::swap(low, high);
     const AreaEstimate estimate_a = estimate_doubled_area(low, high, a);
     const AreaEstimate estimate_b = estimate_doubled_area(low, high, b);
+    // The input segment need not cross what the way crosses.
+    is_delicate_ = is_delicate_ || estimate_a.value * estimate_b.value >= 0.0;
     double to_a = std::fabs(estimate_a.value);
     double to_b = std::fabs(estimate_b.value);
     const double length = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));
@@ -200,21 +216,41 @@ bool March::is_near_edge(Side edge, Point2 p, double distance) const {
 /// and back, so a vertex takes a few only.
 bool March::can_absorb(Side edge, double distance) const {
     const Side across = tin_.twin(edge);
-    if (!across.valid() || (absorbed_at_ == at_ && absorbed_ >= kMaxAbsorbed)) return false;
+    if (!way_.absorbs || !across.valid()) return false;
+    if (absorbed_at_ == at_ && absorbed_ >= kMaxAbsorbed) return false;
     const Point2 c = tin_.plan(tin_.apex(edge));
     if (!is_near_edge(edge, c, distance) || !can_bend(edge, c)) return false;
     const Point2 d = tin_.plan(tin_.apex(across));
+    if (!way_.absorbs_cliffs && is_cliff(edge)) return false;
     return is_left(tin_.plan(tin_.origin(edge)), d, c) &&
            is_left(d, tin_.plan(tin_.destination(edge)), c);
 }
 
+/// Whether the needle beside the edge, whose apex is all but on it, is a step of the surface that
+/// the facet across would have to take in. One that is a needle itself is that narrow all over.
+bool March::is_cliff(Side edge) const {
+    const VertexId apex = tin_.apex(edge);
+    if (std::fabs(tin_.vertex(apex).z - elevation_on(tin_, edge, tin_.plan(apex))) <= flat_)
+        return false;
+    const Side across = tin_.twin(edge);
+    return !is_near_edge(edge, tin_.plan(tin_.apex(across)), reach_of_rounding_) ||
+           !tin_.separates_facets(across.next()) || !tin_.separates_facets(across.previous());
+}
+
+/// What takes a cliff in is not flat: each of its triangles is a facet then.
 bool March::absorb(Side edge) {
+    const Side across = tin_.twin(edge);
+    const bool bends = is_cliff(edge);
+    is_delicate_ = true;
     absorbed_ = absorbed_at_ == at_ ? absorbed_ + 1 : 1;
     absorbed_at_ = at_;
     const VertexId apex = tin_.apex(edge);
     if (tin_.separates_facets(edge)) drift_.bend(apex, bend_of(edge, tin_.plan(apex)));
     changed_.push_back(apex);
     surgery_.absorb_apex(edge);
+    if (bends)
+        for (const Side side : {edge, across})
+            surgery_.give_fresh_facet(side.triangle());
     ++tally_.edges_swapped;
     return true;
 }
@@ -225,6 +261,33 @@ bool March::absorb_needle_at(Side edge) {
         if (!beside.valid()) continue;
         for (const Side side : {beside, beside.next(), beside.previous()})
             if (can_absorb(side, reach_of_rounding_)) return absorb(side);
+    }
+    return false;
+}
+
+/// Where the triangle on the way, which the side belongs to, is a needle without a double inside:
+/// splits the edge through which the way leaves it, at a position that may be beyond it by
+/// rounding. That makes room for the split of the edge through which the way comes.
+//
+//      left -------- right      the way comes from above, through `entry`, left -> right; one of
+//          \  needle /          its ends is all but on the other edge that the way crosses
+//             apex
+bool March::split_beyond(Side entry) {
+    const Point2 from = at_.valid() ? tin_.plan(at_) : start_;
+    for (unsigned needles = 0; needles < kMaxNeedles && entry.valid(); ++needles) {
+        const Orientation turn = orientation(from, end_, tin_.plan(tin_.apex(entry)));
+        if (turn == Collinear || beyond_ == kMaxAbsorbed) return false;
+        const Side far = turn == CounterClockwise ? entry.next() : entry.previous();
+        if (!tin_.is_fixed(far) && !tin_.separates_facets(far)) return false;
+        if (!is_near_edge(far, tin_.plan(tin_.apex(far)), reach_of_rounding_)) return false;
+        if (const std::optional<Point2> p = find_split(far)) {
+            ++beyond_;
+            is_delicate_ = true;
+            count_crossing(far);
+            place_on(far, *p);
+            return true;
+        }
+        entry = tin_.twin(far);
     }
     return false;
 }
@@ -247,7 +310,7 @@ std::optional<VertexId> March::end_within(Side edge, double distance) const {
 /// Whether the way goes through the vertex, though it is inside a facet.
 bool March::is_ahead_within_snap(VertexId v) const {
     const Point2 p = tin_.plan(v);
-    return is_near_segment(p, snap_) && along(p) > along(tin_.plan(at_));
+    return is_near_segment(p, way_.meets_all ? near_ : snap_) && along(p) > along(tin_.plan(at_));
 }
 
 /// An end of the edge that is one with the vertex where the march stands, to within rounding, and
@@ -261,6 +324,7 @@ std::optional<VertexId> March::end_beside(Side edge) {
         if (std::max(std::fabs(p.x - here.x), std::fabs(p.y - here.y)) > reach_of_rounding_)
             continue;
         detours_.insert(v);
+        is_delicate_ = true;
         return v;
     }
     return {};

@@ -7,8 +7,11 @@
 
 #include "core/integrate/improve_across.hpp"
 #include "core/integrate/measure.hpp"
+#include "core/integrate/promise.hpp"
+#include "core/integrate/reach.hpp"
 #include "core/integrate/shape_checks.hpp"
 #include "core/integrate/shape_integration.hpp"
+#include "core/integrate/way.hpp"
 
 namespace tinsmith::core {
 
@@ -21,7 +24,7 @@ class Request {
         : tin_(tin),
           shapes_(shapes),
           options_(options),
-          limits_{options.max_crossings, options.max_new_triangles, &options.cancelled},
+          limits_(limits_of(options)),
           drift_(tin.vertex_count()),
           watch_(options.clock_ms) {}
     Request(const Request&) = delete;
@@ -30,8 +33,7 @@ class Request {
 
     Result<Report> run() {
         done_.reserve(2 * shapes_.size());  // once: to keep a record must not fail
-        for (std::size_t s = 0; s < shapes_.size(); ++s)
-            if (std::optional<Error> error = integrate_shape(s)) return *error;
+        if (std::optional<Error> error = integrate_shapes()) return *error;
         if (!met_mesh_ && !encloses_mesh(tin_, shapes_)) return outside_error(tin_, shapes_);
         const bool leaves = std::any_of(report_.shapes.begin(), report_.shapes.end(),
                                         [](const ShapeReport& r) { return !r.outside.empty(); });
@@ -46,16 +48,76 @@ class Request {
     Undo keep() { return std::exchange(done_, {}); }
 
   private:
-    std::optional<Error> integrate_shape(std::size_t s) {
+    static MarchLimits limits_of(const IntegrateOptions& options) {
+        return {options.max_crossings, options.max_new_triangles, &options.cancelled};
+    }
+
+    /// All of them, each path the way it finds; another way where rounding led one astray. The
+    /// first error is the request's where no way helps.
+    std::optional<Error> integrate_shapes() {
+        Ways ways;
+        std::optional<Error> first;
+        while (true) {
+            std::optional<Error> error = integrate_shapes(ways);
+            if (!error && is_delicate_) error = broken_promise();
+            if (!error || !may_go_another_way(error->code)) return error;
+            const ErrorPlace& place = error->place;
+            if (!first) first = error;
+            if (!ways.change(place.shape.value_or(0), place.path.value_or(0))) return first;
+            start_again();
+        }
+    }
+
+    static bool may_go_another_way(ErrorCode code) {
+        return code == ErrorCode::NotRepresentable || code == ErrorCode::StepBudget;
+    }
+
+    std::optional<Error> integrate_shapes(const Ways& ways) {
+        for (std::size_t s = 0; s < shapes_.size(); ++s)
+            if (std::optional<Error> error = integrate_shape(s, ways)) return error;
+        return std::nullopt;
+    }
+
+    /// The core's own look at what it did, for the requests in which rounding decided something.
+    std::optional<Error> broken_promise() const {
+        const Replaced replaced(tin_, done_);
+        const auto broken = find_broken_promise(
+            {tin_, replaced, shapes_, report_.shapes, options_, reach_of_rounding(tin_)});
+        if (!broken) return std::nullopt;
+        ErrorPlace place;
+        place.shape = broken->shape;
+        place.path = broken->path;
+        place.point = broken->point;
+        place.position = broken->position;
+        return Error{ErrorCode::NotRepresentable,
+                     "no mesh of doubles was found that holds this segment as promised; move it a "
+                     "little",
+                     place};
+    }
+
+    void start_again() {
+        take_back(tin_, done_);
+        done_.clear();
+        limits_ = limits_of(options_);
+        drift_ = Drift(tin_.vertex_count());
+        report_.shapes.clear();
+        changed_.clear();
+        set_vertices_.clear();
+        met_mesh_ = false;
+        is_delicate_ = true;  // the other ways are for the rare places: look at all they do
+    }
+
+    std::optional<Error> integrate_shape(std::size_t s, const Ways& ways) {
         Surgery surgery(tin_);
         ShapeIntegration integration(surgery, options_, limits_, drift_, watch_, report_.time_ms);
-        if (!integration.run(shapes_[s])) {
+        if (!integration.run(shapes_[s], s, ways)) {
             Error error = integration.error();
             error.place.shape = s;
             return error;
         }
         const MarchTally& tally = integration.tally();
         met_mesh_ = met_mesh_ || tally.met_mesh;
+        is_delicate_ = is_delicate_ || integration.is_delicate();
         // The budgets are the request's: each shape leaves the rest of them to the next.
         limits_.max_crossings -= tally.crossings + tally.self_crossings;
         limits_.max_new_triangles -= tin_.triangle_count() - surgery.record().triangle_count;
@@ -126,6 +188,7 @@ class Request {
     std::vector<std::vector<VertexId>> changed_;  ///< by each shape
     std::vector<VertexId> set_vertices_;          ///< by all of them
     bool met_mesh_ = false;
+    bool is_delicate_ = false;  ///< rounding decided somewhere
 };
 
 }  // namespace

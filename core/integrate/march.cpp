@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/integrate/distance.hpp"
+#include "core/integrate/reach.hpp"
 #include "core/mesh/surface.hpp"
 #include "core/predicates/orientation.hpp"
-#include "core/types/ulp.hpp"
 
 namespace tinsmith::core {
 
@@ -29,20 +30,23 @@ March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimit
       limits_(limits),
       drift_(drift),
       improver_(improver) {
+    reach_of_rounding_ = reach_of_rounding(tin_);
     const Bounds& box = tin_.bounds();
-    const double largest = std::max(
-        {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
-    reach_of_rounding_ = 4.0 * ulp(largest);
+    flat_ = 1e-10 * distance_between(box.min.plan(), box.max.plan());
     set_snap(options.snap);
 }
 
 void March::set_snap(double snap) {
     snap_ = snap;
-    near_ = std::max(snap, reach_of_rounding_ / 2.0);
+    near_ = std::max(snap, reach_of_rounding_ * way_.nearness);
 }
 
-bool March::begin(std::size_t index, const Path& path) {
+bool March::begin(std::size_t index, const Path& path, const Way& way) {
     path_ = &path;
+    way_ = way;
+    // Elevations make no two vertices of what may be one.
+    if (!path.elevations.empty()) way_.meets_all = true;
+    set_snap(options_.snap);
     path_index_ = index;
     exit_ahead_ = {};
     from_ = to_ = 0;
@@ -52,6 +56,7 @@ bool March::begin(std::size_t index, const Path& path) {
     if (!has_ids()) return false;
     outside_.clear();
     first_ = {};
+    if (way_.settles_first) settle_all();
     const std::size_t triangles = tin_.triangle_count();
     const TriangleId seed =
         options_.walk_seed == 0
@@ -71,6 +76,14 @@ bool March::begin(std::size_t index, const Path& path) {
     return within_limits();
 }
 
+/// Makes all points of the path that are on the mesh vertices before any segment is there.
+void March::settle_all() {
+    for (const Point2 p : path_->points) {
+        const Location location = locate(tin_, p, tin_.hint(p));
+        if (location.kind != Location::Kind::Outside) settle(location, p);
+    }
+}
+
 bool March::advance(std::size_t to) {
     from_ = to_;
     to_ = to;
@@ -84,6 +97,7 @@ bool March::advance(std::size_t to) {
     if (!done && snap_ > 0.0 && error_ &&
         (error_->code == ErrorCode::NotRepresentable || error_->code == ErrorCode::StepBudget)) {
         error_.reset();
+        is_delicate_ = true;
         set_snap(0.0);
         steps_ = 0;
         done = march_to_end();
@@ -99,9 +113,11 @@ bool March::march_home() {
     if (tin_.plan(at_) == home) return true;
     set_snap(0.0);
     exit_ahead_ = {};
+    const bool takes_corners = std::exchange(way_.takes_corners, false);
     set_segment(tin_.plan(at_), home);
     from_ = to_;
     const bool done = march_to_end();
+    way_.takes_corners = takes_corners;
     set_snap(options_.snap);
     return done;
 }
@@ -116,6 +132,7 @@ void March::set_segment(Point2 start, Point2 end) {
     entries_known_ = false;
     spent_edges_.clear();
     detours_.clear();
+    beyond_ = 0;
 }
 
 bool March::march_to_end() {
@@ -163,7 +180,7 @@ Side March::first_look() const {
 /// The end of the segment is where the march stands, or within snap of it.
 bool March::has_arrived() const {
     const Point2 p = tin_.plan(at_);
-    return p == end_ || (snap_ > 0.0 && is_within(p, end_, snap_));
+    return p == end_ || (corner_reach() > 0.0 && is_within(p, end_, corner_reach()));
 }
 
 bool March::finish() {
@@ -195,6 +212,9 @@ bool March::follow(const Departure& departure) {
 //        right
 bool March::cross(Side exit) {
     bool needs_swaps = false;
+    if (way_.meets_all)
+        if (const std::optional<VertexId> met = end_within(exit, near_); met && has_way(*met))
+            return connect(*met);
     while (true) {
         const Point2 right = tin_.plan(tin_.origin(exit));
         const Point2 left = tin_.plan(tin_.destination(exit));
@@ -212,7 +232,8 @@ bool March::cross(Side exit) {
         needs_swaps = true;
         const Side entry = tin_.twin(exit);
         const VertexId apex = tin_.apex(entry);
-        if (snap_ > 0.0 && is_ahead_within_snap(apex) && has_way(apex)) return connect(apex);
+        if ((snap_ > 0.0 || way_.meets_all) && is_ahead_within_snap(apex) && has_way(apex))
+            return connect(apex);
         switch (orientation(tin_.plan(at_), end_, tin_.plan(apex))) {
             case Collinear:
                 if (tin_.plan(apex) != end_ && is_ahead(tin_.plan(apex), tin_.plan(at_), end_))

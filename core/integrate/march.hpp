@@ -13,6 +13,7 @@
 #include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
+#include "core/integrate/way.hpp"
 #include "core/mesh/surgery.hpp"
 #include "core/mesh/vertex_set.hpp"
 #include "core/mesh/walk.hpp"
@@ -70,7 +71,7 @@ class March {
 
     /// Begins a path at its first point; `index` is the path's in its shape. The path must live
     /// until `finish`. Costs a location. False: stopped, see `error`.
-    bool begin(std::size_t index, const Path& path);
+    bool begin(std::size_t index, const Path& path, const Way& way = kWays[0]);
     /// Integrates the segment from where the march stands to the path's point `to`. Requires: begin
     /// was called, and the point's position differs from the one before. False: stopped, see
     /// `error`.
@@ -81,6 +82,8 @@ class March {
     const MarchTally& tally() const { return tally_; }
     MarchTally& tally() { return tally_; }
     std::optional<Error>& error() { return error_; }
+    /// Whether rounding decided somewhere, so that what was done is to be checked.
+    bool is_delicate() const { return is_delicate_; }
     /// How far any vertex may be, in plan, off the edge between facets that it was put on.
     double largest_bend() const;
     /// Vertices whose surroundings changed, but for those where the improver has seen to that; the
@@ -99,9 +102,11 @@ class March {
     // march.cpp
     void set_snap(double snap);
     void set_segment(Point2 start, Point2 end);
+    void settle_all();
     bool march_to_end();
     bool march_home();
     bool has_arrived() const;
+    double corner_reach() const { return way_.takes_corners ? near_ : snap_; }
     Side first_look() const;
     bool is_as_promised();
     bool follow(const Departure& departure);
@@ -133,17 +138,20 @@ class March {
 
     // crossing.cpp
     bool cross_facet_edge(Side exit, bool needs_swaps);
-    std::optional<Point2> find_split(Side edge) const;
+    bool leave_across(Side edge);
+    std::optional<Point2> find_split(Side edge);
     std::optional<Point2> find_split_along(Side edge, Point2 p) const;
-    Point2 intersection(Side edge) const;
-    Point2 crossing_of(Point2 low, Point2 high, Point2 a, Point2 b) const;
+    Point2 intersection(Side edge);
+    Point2 crossing_of(Point2 low, Point2 high, Point2 a, Point2 b);
     bool can_split(Side edge, Point2 p) const;
     bool is_clear_of_boundary(Side edge, Point2 p) const;
     bool is_near_segment(Point2 p, double distance) const;
     bool is_near_edge(Side edge, Point2 p, double distance) const;
     bool can_absorb(Side edge, double distance) const;
+    bool is_cliff(Side edge) const;
     bool absorb(Side edge);
     bool absorb_needle_at(Side edge);
+    bool split_beyond(Side entry);
     std::optional<VertexId> end_within(Side edge, double distance) const;
     std::optional<VertexId> end_beside(Side edge);
     bool is_ahead_within_snap(VertexId v) const;
@@ -191,14 +199,16 @@ class March {
     };
     bool enter();
     void collect_entries();
-    std::optional<Entry> entry_at(VertexId v) const;
+    std::optional<Entry> entry_at(VertexId v);
     std::optional<Entry> next_entry();
+    bool was_here(VertexId v) const;
     bool enter_by(const Entry& entry);
     Location locate_on_boundary(Point2 p) const;
     void visit_boundary(VertexId v);
     bool enter_other_fan();
     VertexId vertex_of_other_fan();
     Location locate_beside(TriangleId t, Point2 p) const;
+    bool is_one_with_end(double distance) const;
     void leave_mesh();
     void close_outside();
     double along(Point2 p) const;
@@ -210,6 +220,7 @@ class March {
     Drift& drift_;
     Improver* improver_;
     double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
+    double flat_;               ///< a step of the surface that is none
     double snap_;               ///< of this segment
     double near_;               ///< what is nearer is one: half of that, or the snap
     MarchTally tally_;
@@ -223,6 +234,8 @@ class March {
     static constexpr std::uint32_t kNotPlain = 0x1011U;
 
     const Path* path_ = nullptr;
+    Way way_;
+    bool is_delicate_ = false;
     std::size_t path_index_ = 0;
     std::size_t from_ = 0;  ///< the input segment's points in the path
     std::size_t to_ = 0;
@@ -242,6 +255,8 @@ class March {
     static constexpr unsigned kMaxAbsorbed = 8;
     VertexId absorbed_at_;  ///< where the march last absorbed needles, and how many there
     unsigned absorbed_ = 0;
+    static constexpr unsigned kMaxNeedles = 4;
+    unsigned beyond_ = 0;          ///< how often the segment's way out of a needle was split first
     std::vector<Point2> outside_;  ///< the stretch outside that is being walked
     VertexSet boundary_visits_;    ///< where this segment met the boundary
     double farthest_visit_ = 0.0;  ///< the last of them along the segment

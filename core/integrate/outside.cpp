@@ -2,6 +2,7 @@
 // Where paths run outside the mesh: concave outlines, holes, between components.
 #include <algorithm>
 
+#include "core/integrate/distance.hpp"
 #include "core/integrate/march.hpp"
 #include "core/predicates/orientation.hpp"
 
@@ -46,12 +47,14 @@ void March::collect_entries() {
 }
 
 /// How the segment meets the boundary edge that starts at v, or v itself, coming from outside.
-std::optional<March::Entry> March::entry_at(VertexId v) const {
+std::optional<March::Entry> March::entry_at(VertexId v) {
     if (v.index() >= tin_.vertex_count()) return {};
     const Side edge = boundary_side_from(tin_, v);
     if (!edge.valid()) return {};
     const Point2 a = tin_.plan(v);
     const Point2 b = tin_.plan(tin_.destination(edge));
+    if (is_near_edge(edge, end_, reach_of_rounding_ * way_.edge_nearness) && can_split(edge, end_))
+        return Entry{along(end_), v, edge, true};
     const Orientation turn_a = orientation(start_, end_, a);
     if (turn_a == Collinear) {
         const bool is_behind = a != start_ && !is_ahead(start_, end_, a);
@@ -59,8 +62,6 @@ std::optional<March::Entry> March::entry_at(VertexId v) const {
         if (is_behind || is_beyond) return {};
         return Entry{along(a), v, {}};
     }
-    if (is_near_edge(edge, end_, reach_of_rounding_ / 2.0) && can_split(edge, end_))
-        return Entry{along(end_), v, edge, true};
     const Orientation turn_b = orientation(start_, end_, b);
     if (turn_b == Collinear || turn_a == turn_b) return {};
     // The mesh is on the left of a -> b: the segment enters from its right.
@@ -84,11 +85,23 @@ std::optional<March::Entry> March::next_entry() {
         if (!entry || entry->along < farthest_visit_ - rounding) continue;
         if (entry->along > farthest_visit_ + rounding) return entry;
         const bool is_known =
-            boundary_visits_.contains(v) ||
-            (entry->edge.valid() && boundary_visits_.contains(tin_.destination(entry->edge)));
+            was_here(v) || (entry->edge.valid() && was_here(tin_.destination(entry->edge)));
         if (entry->ends_here || !is_known) return entry;
     }
     return {};
+}
+
+/// Whether the segment met the boundary at v, or stood there just before it last did.
+bool March::was_here(VertexId v) const {
+    if (boundary_visits_.contains(v)) return true;
+    if (tally_.chains.empty() || tally_.chains.back().path != path_index_) return false;
+    const std::vector<VertexId>& chain = tally_.chains.back().vertices;
+    const double rounding = reach_of_rounding_ * length_;
+    for (auto w = chain.rbegin(); w != chain.rend(); ++w) {
+        if (*w == v) return true;
+        if (along(tin_.plan(*w)) < farthest_visit_ - rounding) break;
+    }
+    return false;
 }
 
 /// The boundary edge next to the position, where it is on it to within rounding.
@@ -96,7 +109,8 @@ Location March::locate_on_boundary(Point2 p) const {
     for (const VertexId v : tin_.boundary().near(p, p, reach_of_rounding_)) {
         if (v.index() >= tin_.vertex_count()) continue;
         const Side edge = boundary_side_from(tin_, v);
-        if (edge.valid() && is_near_edge(edge, p, reach_of_rounding_ / 2.0) && can_split(edge, p))
+        if (edge.valid() && is_near_edge(edge, p, reach_of_rounding_ * way_.edge_nearness) &&
+            can_split(edge, p))
             return {Location::Kind::OnEdge, edge, {}};
     }
     return {};
@@ -108,20 +122,24 @@ bool March::enter_by(const Entry& entry) {
     VertexId v = entry.vertex;
     if (entry.edge.valid()) {
         const bool ends_here = entry.ends_here;
+        is_delicate_ = is_delicate_ || ends_here;
         std::optional<VertexId> met = end_within(entry.edge, near_);
         const std::optional<Point2> p = ends_here ? end_ : find_split(entry.edge);
+        is_delicate_ = is_delicate_ || (!met && !p);
         if (!met && !p) met = end_within(entry.edge, std::max(near_, reach_of_rounding_));
         if (met && !ends_here) {
             // Back at a vertex that the segment left: this edge brings nothing new.
             if (boundary_visits_.contains(*met)) {
                 spent_edges_.insert(v);
+                is_delicate_ = true;
                 return true;
             }
             v = *met;
         } else if (p) {
             if (!ends_here) count_crossing(entry.edge);
             v = place({Location::Kind::OnEdge, entry.edge, {}}, *p);
-        } else if (absorb_needle_at(entry.edge)) {
+        } else if ((way_.splits_beyond && split_beyond(entry.edge)) ||
+                   absorb_needle_at(entry.edge)) {
             return true;  // the entry is looked up anew
         } else {
             return fail(ErrorCode::NotRepresentable,
@@ -149,6 +167,7 @@ bool March::enter_other_fan() {
     if (detours_.contains(at_)) return false;
     const VertexId v = vertex_of_other_fan();
     if (!v.valid()) return false;
+    is_delicate_ = true;
     detours_.insert(at_);
     visit_boundary(at_);
     tally_.chains.push_back({path_index_, {}});
@@ -203,8 +222,15 @@ Location March::locate_beside(TriangleId t, Point2 p) const {
     return here;
 }
 
+/// Whether the march stands within the distance of either end of the segment.
+bool March::is_one_with_end(double distance) const {
+    const Point2 p = tin_.plan(at_);
+    return distance_between(p, end_) <= distance || distance_between(p, start_) <= distance;
+}
+
 /// Leaves the mesh from the vertex where the march stands.
 void March::leave_mesh() {
+    if (options_.snap > 0.0 || is_one_with_end(2.0 * reach_of_rounding_)) is_delicate_ = true;
     visit_boundary(at_);
     outside_.assign(1, tin_.plan(at_));
     at_ = {};

@@ -17,20 +17,50 @@ constexpr double kInterpolationUlps = 4.0;
 
 }  // namespace
 
-bool ShapeIntegration::run(const Shape& shape) {
+bool ShapeIntegration::run(const Shape& shape, std::size_t index, const Ways& ways) {
     std::size_t points = 0;
     for (const Path& path : shape.paths)
         points += path.points.size();
     surgery_.expect(points);
     drift_.expect(points);
-    for (std::size_t p = 0; p < shape.paths.size(); ++p)
-        if (!shape.paths[p].points.empty() && !run(p, shape.paths[p])) return false;
+    for (std::size_t p = 0; p < shape.paths.size(); ++p) {
+        if (shape.paths[p].points.empty()) continue;
+        const Way& way = ways.of(index, p);
+        if (!(way.is_reversed ? run_reversed(p, shape.paths[p], way) : run(p, shape.paths[p], way)))
+            return false;
+    }
     improve(0);
     return set_elevations();
 }
 
-bool ShapeIntegration::run(std::size_t index, const Path& path) {
-    if (!march_.begin(index, path)) return false;
+/// Marches the path from its end and turns what the march says of it round again.
+bool ShapeIntegration::run_reversed(std::size_t index, const Path& path, const Way& way) {
+    Path turned = path;
+    const auto turn = [&path](auto& list) {
+        // A ring still begins at its first point.
+        std::reverse(list.begin() + (path.closed && !list.empty() ? 1 : 0), list.end());
+    };
+    turn(turned.points);
+    turn(turned.elevations);
+    MarchTally& tally = march_.tally();
+    const std::size_t chains = tally.chains.size(), outside = tally.outside.size();
+    if (!run(index, turned, way)) {
+        // From segment i of the turned path to that of the path.
+        const std::size_t last = path.points.size() - (path.closed ? 1 : 2);
+        if (auto& point = march_.error()->place.point) point = last - std::min(last, *point);
+        return false;
+    }
+    std::reverse(tally.chains.begin() + static_cast<std::ptrdiff_t>(chains), tally.chains.end());
+    for (std::size_t i = chains; i < tally.chains.size(); ++i)
+        std::reverse(tally.chains[i].vertices.begin(), tally.chains[i].vertices.end());
+    std::reverse(tally.outside.begin() + static_cast<std::ptrdiff_t>(outside), tally.outside.end());
+    for (std::size_t i = outside; i < tally.outside.size(); ++i)
+        std::reverse(tally.outside[i].points.begin(), tally.outside[i].points.end());
+    return true;
+}
+
+bool ShapeIntegration::run(std::size_t index, const Path& path, const Way& way) {
+    if (!march_.begin(index, path, way)) return false;
     watch_.lap(times_.locate);
     Point2 last = path.points.front();
     const std::size_t count = path.points.size();

@@ -7,6 +7,7 @@
 #include "core/integrate/march.hpp"
 #include "core/integrate/measure.hpp"
 #include "core/integrate/stopwatch.hpp"
+#include "core/integrate/way.hpp"
 #include "core/mesh/surgery.hpp"
 
 namespace tinsmith::core {
@@ -27,10 +28,11 @@ class ShapeIntegration {
                  options.improve == Improve::Strict ? &improver_ : nullptr) {}
 
     /// False: stopped, see `error`.
-    bool run(const Shape& shape);
+    bool run(const Shape& shape, std::size_t index, const Ways& ways);
 
     const Error& error() { return *march_.error(); }
     const MarchTally& tally() const { return march_.tally(); }
+    bool is_delicate() const { return march_.is_delicate(); }
     /// Vertices whose surroundings the march changed; kept for swaps across facets only.
     std::vector<VertexId>& changed() { return changed_; }
     /// Vertices whose elevation the shape set, in order.
@@ -39,7 +41,8 @@ class ShapeIntegration {
     ShapeReport report();
 
   private:
-    bool run(std::size_t index, const Path& path);
+    bool run(std::size_t index, const Path& path, const Way& way);
+    bool run_reversed(std::size_t index, const Path& path, const Way& way);
     void improve(std::size_t waiting);
     bool set_elevations();
     double certify(const Measurement& measured);

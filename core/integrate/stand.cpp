@@ -30,8 +30,10 @@ Point2 nearest_on(Point2 a, Point2 b, Point2 p) {
 /// Makes an input position, located in a triangle or on an edge, a vertex; or takes the vertex or
 /// the place on an edge between facets that is within snap of it.
 VertexId March::settle(const Location& location, Point2 p) {
-    if (snap_ > 0.0 && location.kind != Location::Kind::OnVertex) {
+    if (corner_reach() > 0.0 && location.kind != Location::Kind::OnVertex) {
         if (const auto vertex = vertex_within_snap(location, p)) return *vertex;
+    }
+    if (snap_ > 0.0 && location.kind != Location::Kind::OnVertex) {
         if (const auto found = edge_within_snap(location, p))
             return place({Location::Kind::OnEdge, found->first, {}}, found->second);
     }
@@ -41,7 +43,7 @@ VertexId March::settle(const Location& location, Point2 p) {
 /// The nearest corner of the triangles that the location is in.
 std::optional<VertexId> March::vertex_within_snap(const Location& location, Point2 p) const {
     std::optional<VertexId> nearest;
-    double least = snap_ * snap_;
+    double least = corner_reach() * corner_reach();
     for (const Side side : {location.side, tin_.twin(location.side)}) {
         if (!side.valid()) continue;
         for (const VertexId v : tin_.triangle(side.triangle()).vertices) {
@@ -81,8 +83,8 @@ VertexId March::place(Location location, Point2 p) {
     if (location.kind == Location::Kind::InTriangle) {
         for (unsigned i = 0; i < 3; ++i) {
             const Side side(location.side.triangle(), i);
-            if (is_near_edge(side, p, reach_of_rounding_ / 2.0) && can_bend(side, p) &&
-                can_split(side, p))
+            if (is_near_edge(side, p, reach_of_rounding_ * way_.edge_nearness) &&
+                can_bend(side, p) && can_split(side, p))
                 location = {Location::Kind::OnEdge, side, {}};
         }
     }

@@ -75,7 +75,7 @@ void March::fetch_path() const {
 /// or invalid, and where the march stands the way on has to be looked for. False: stopped, see
 /// `error`.
 bool March::stride(Side& exit) {
-    if (options_.snap > 0.0 || !path_->elevations.empty()) return true;
+    if (options_.snap > 0.0 || !path_->elevations.empty() || way_.settles_first) return true;
     while (exit.valid()) {
         const Tin::Triangle& behind = tin_.triangle(exit.triangle());
         const unsigned i = exit.index();

@@ -43,16 +43,13 @@ bool one_in(Random& random, int count) {
 std::uint64_t unrepresentable_per_million(MeshKind kind) {
     switch (kind) {
         case MeshKind::Needles:
-            return 700;
         case MeshKind::Strips:
-            return 400;
         case MeshKind::Map:
-            return 400;
         case MeshKind::FarAway:
         case MeshKind::Steep:
-            return 250;
+            return 200;
         default:
-            return 150;
+            return 100;
     }
 }
 

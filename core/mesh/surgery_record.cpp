@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a surgery keeps of the mesh before it, and how that comes back.
+#include <algorithm>
+#include <utility>
+
+#include "core/mesh/surgery.hpp"
+
+namespace tinsmith::core {
+
+Surgery::Surgery(Tin& tin) : tin_(tin) {
+    record_.vertex_count = tin.vertices_.size();
+    record_.triangle_count = tin.triangles_.size();
+    record_.boundary_changes = tin.boundary_.changes();
+    record_.split_count = tin.constraint_splits_.size();
+    record_.next_facet = tin.next_facet_;
+    record_.facet_error = tin.facet_error_;
+    record_.bounds = tin.bounds_;
+}
+
+void Surgery::expect(std::size_t vertices) {
+    record_.triangles.reserve(record_.triangles.size() + 2 * vertices);
+}
+
+Surgery::~Surgery() {
+    if (open_) roll_back();
+}
+
+UndoRecord Surgery::commit() {
+    if (bounds_are_stale_) {
+        const auto [low, high] = std::minmax_element(
+            tin_.vertices_.begin(), tin_.vertices_.end(),
+            [](const Tin::Vertex& l, const Tin::Vertex& r) { return l.z < r.z; });
+        tin_.bounds_.min.z = low->z;
+        tin_.bounds_.max.z = high->z;
+    }
+    for (const auto& [id, old] : record_.triangles)
+        tin_.triangles_[id.index()].marks &= ~kTransientBits;
+    for (std::size_t i = record_.triangle_count; i < tin_.triangles_.size(); ++i)
+        tin_.triangles_[i].marks &= ~kTransientBits;
+    open_ = false;
+    return std::move(record_);
+}
+
+void Surgery::roll_back() {
+    undo(tin_, record_);
+    open_ = false;
+}
+
+void Surgery::undo(Tin& tin, const UndoRecord& record) {
+    tin.boundary_.take_back(record.boundary_changes);
+    tin.vertices_.resize(record.vertex_count);
+    tin.triangles_.resize(record.triangle_count);
+    for (const auto& [id, old] : record.triangles)
+        tin.triangles_[id.index()] = old;
+    for (auto entry = record.vertices.rbegin(); entry != record.vertices.rend(); ++entry)
+        tin.vertices_[entry->first.index()] = entry->second;
+    tin.constraint_splits_.resize(record.split_count);
+    tin.next_facet_ = record.next_facet;
+    tin.facet_error_ = record.facet_error;
+    tin.bounds_ = record.bounds;
+}
+
+}  // namespace tinsmith::core
