@@ -37,7 +37,9 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
             return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
         is_delicate_ = true;
     }
-    if (!tin_.twin(exit).valid() && !needs_swaps && is_near_edge(exit, tin_.plan(at_), rounding))
+    // Only where the chain comes from the outline: a region's border must reach it.
+    if (!tin_.twin(exit).valid() && !needs_swaps && comes_from_end_of(exit) &&
+        is_near_edge(exit, tin_.plan(at_), rounding))
         return leave_across(exit);
     if (way_.goes_beside)
         if (const std::optional<VertexId> end = end_beside(exit)) return connect(*end);
@@ -64,6 +66,14 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     if (const std::optional<VertexId> end = end_beside(exit)) return connect(*end);
     return fail(ErrorCode::NotRepresentable,
                 "no mesh of doubles holds this segment within rounding; move it a little");
+}
+
+/// Whether the chain's vertex before this one is an end of the edge.
+bool March::comes_from_end_of(Side edge) const {
+    const std::vector<VertexId>& chain = tally_.chains.back().vertices;
+    if (chain.size() < 2) return false;
+    const VertexId last = chain[chain.size() - 2];
+    return last == tin_.origin(edge) || last == tin_.destination(edge);
 }
 
 /// Leaves the mesh through a boundary edge that the march stands on to within rounding.

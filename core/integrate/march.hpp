@@ -129,6 +129,7 @@ class March {
 
     // crossing.cpp
     bool cross_facet_edge(Side exit, bool needs_swaps);
+    bool comes_from_end_of(Side edge) const;
     bool leave_across(Side edge);
     std::optional<Point2> find_split(Side edge);
     std::optional<Point2> find_split_along(Side edge, Point2 p) const;
