@@ -31,14 +31,15 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     // Beyond edges to be swapped, rounding may have bent the outline into the straight way there.
     const std::optional<VertexId> met = end_within(exit, near_);
     if (met && (!needs_swaps || has_way(*met))) return connect(*met);
-    if (way_.absorbs_early && tin_.apex(exit) == at_ && can_absorb(exit, rounding))
-        return absorb(exit);
+    if (tin_.apex(exit) == at_ && can_absorb(exit, rounding)) return absorb(exit);
     if (is_near_edge(exit, end_, reach_of_rounding_)) {
         if (is_near_edge(exit, end_, rounding) && can_bend(exit, end_) && can_split(exit, end_))
             return reach(place({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);
         is_delicate_ = true;
     }
-    if (!tin_.twin(exit).valid() && !needs_swaps && is_near_edge(exit, tin_.plan(at_), rounding))
+    // Only where the chain comes from the outline: a region's border must reach it.
+    if (!tin_.twin(exit).valid() && !needs_swaps && comes_from_end_of(exit) &&
+        is_near_edge(exit, tin_.plan(at_), rounding))
         return leave_across(exit);
     if (way_.goes_beside)
         if (const std::optional<VertexId> end = end_beside(exit)) return connect(*end);
@@ -53,7 +54,7 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     is_delicate_ = true;
     // Only rounding can forbid the split: a triangle beside the edge is a needle. There is room
     // beyond it; or its middle vertex goes onto its long side; or whatever else is within reach.
-    if (way_.splits_beyond && split_beyond(tin_.twin(exit))) return true;
+    if (split_beyond(tin_.twin(exit))) return true;
     if (absorb_needle_at(exit)) return true;
     if (!tin_.twin(exit).valid() && !needs_swaps &&
         is_near_edge(exit, tin_.plan(at_), reach_of_rounding_))
@@ -65,6 +66,14 @@ bool March::cross_facet_edge(Side exit, bool needs_swaps) {
     if (const std::optional<VertexId> end = end_beside(exit)) return connect(*end);
     return fail(ErrorCode::NotRepresentable,
                 "no mesh of doubles holds this segment within rounding; move it a little");
+}
+
+/// Whether the chain's vertex before this one is an end of the edge.
+bool March::comes_from_end_of(Side edge) const {
+    const std::vector<VertexId>& chain = tally_.chains.back().vertices;
+    if (chain.size() < 2) return false;
+    const VertexId last = chain[chain.size() - 2];
+    return last == tin_.origin(edge) || last == tin_.destination(edge);
 }
 
 /// Leaves the mesh through a boundary edge that the march stands on to within rounding.
@@ -216,7 +225,7 @@ bool March::is_near_edge(Side edge, Point2 p, double distance) const {
 /// and back, so a vertex takes a few only.
 bool March::can_absorb(Side edge, double distance) const {
     const Side across = tin_.twin(edge);
-    if (!way_.absorbs || !across.valid()) return false;
+    if (!across.valid()) return false;
     if (absorbed_at_ == at_ && absorbed_ >= kMaxAbsorbed) return false;
     const Point2 c = tin_.plan(tin_.apex(edge));
     if (!is_near_edge(edge, c, distance) || !can_bend(edge, c)) return false;

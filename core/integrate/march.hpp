@@ -59,9 +59,10 @@ struct MarchLimits {
 ///   2. every vertex of the chain is within the larger of snap and `reach_of_rounding` of the input
 ///      segment, however often the way was snapped;
 ///   3. no triangle changed that the segment does not meet, but for swaps inside their facets.
-/// Where no mesh of doubles can do that, the march stops with NotRepresentable; the caller rolls
-/// back. It ends: each step is nearer to the segment's end, and a budget on steps stands behind
-/// that for the cases in which rounding decides.
+/// Where no mesh of doubles is found that does, the march stops with NotRepresentable; the caller
+/// rolls back, and may go another way. Where rounding decided, it says so (`is_delicate`): the laws
+/// are then to be checked. It ends: each step is nearer to the segment's end, and a budget on steps
+/// stands behind that for the cases in which rounding decides.
 class March {
   public:
     /// `drift` is the request's, and knows what earlier shapes of it did. `improver`, where there
@@ -138,6 +139,7 @@ class March {
 
     // crossing.cpp
     bool cross_facet_edge(Side exit, bool needs_swaps);
+    bool comes_from_end_of(Side edge) const;
     bool leave_across(Side edge);
     std::optional<Point2> find_split(Side edge);
     std::optional<Point2> find_split_along(Side edge, Point2 p) const;
@@ -234,8 +236,8 @@ class March {
     static constexpr std::uint32_t kNotPlain = 0x1011U;
 
     const Path* path_ = nullptr;
-    Way way_;
-    bool is_delicate_ = false;
+    Way way_;                   ///< of the path at hand
+    bool is_delicate_ = false;  ///< rounding decided somewhere
     std::size_t path_index_ = 0;
     std::size_t from_ = 0;  ///< the input segment's points in the path
     std::size_t to_ = 0;

@@ -138,8 +138,7 @@ bool March::enter_by(const Entry& entry) {
         } else if (p) {
             if (!ends_here) count_crossing(entry.edge);
             v = place({Location::Kind::OnEdge, entry.edge, {}}, *p);
-        } else if ((way_.splits_beyond && split_beyond(entry.edge)) ||
-                   absorb_needle_at(entry.edge)) {
+        } else if (split_beyond(entry.edge) || absorb_needle_at(entry.edge)) {
             return true;  // the entry is looked up anew
         } else {
             return fail(ErrorCode::NotRepresentable,

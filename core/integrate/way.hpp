@@ -18,10 +18,7 @@ struct Way {
     double edge_nearness = 0.5;   ///< the same for points beside edges
     bool meets_all = false;       ///< goes through vertices near the segment inside facets too
     bool splits_along = true;     ///< splits edges beside the crossing where it must
-    bool splits_beyond = true;    ///< makes room beyond a needle before it takes it away
-    bool absorbs_early = true;    ///< takes needles away before it tries to split their edge
-    bool absorbs = true;          ///< takes needles away at all
-    bool absorbs_cliffs = false;  ///< also where that moves the surface
+    bool absorbs_cliffs = false;  ///< takes needles away even where they are steps of the surface
 };
 
 /// The first is the one that paths go; the others are for those that cannot go it.
