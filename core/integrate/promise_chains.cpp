@@ -20,8 +20,7 @@ struct Stretch {
 class ChainFinder {
   public:
     ChainFinder(const Attempt& attempt, std::vector<Replaced::Edge> edges)
-        : attempt_(attempt),
-          tin_(attempt.tin),
+        : tin_(attempt.tin),
           reach_(chain_reach(attempt)),
           edges_(std::move(edges)),
           is_explained_(edges_.size(), false),
@@ -150,7 +149,6 @@ class ChainFinder {
         });
     }
 
-    const Attempt& attempt_;
     const Tin& tin_;
     double reach_;
     std::vector<Replaced::Edge> edges_;
