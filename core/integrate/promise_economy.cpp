@@ -28,7 +28,7 @@ struct Line {
     friend bool operator==(const Line&, const Line&) = default;
 };
 
-bool is_before(const Line& l, const Line& r) {
+bool is_left_of(const Line& l, const Line& r) {
     if (l.a.x != r.a.x) return l.a.x < r.a.x;
     if (l.a.y != r.a.y) return l.a.y < r.a.y;
     return l.b.x != r.b.x ? l.b.x < r.b.x : l.b.y < r.b.y;
@@ -36,7 +36,7 @@ bool is_before(const Line& l, const Line& r) {
 
 /// Each once.
 void sort_out(std::vector<Line>& lines) {
-    std::sort(lines.begin(), lines.end(), is_before);
+    std::sort(lines.begin(), lines.end(), is_left_of);
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
 }
 
