@@ -137,6 +137,8 @@ void March::set_segment(Point2 start, Point2 end) {
 
 bool March::march_to_end() {
     if (!within_budget()) return false;
+    // For the first step of this segment and no other: it may be no step long.
+    Side known = std::exchange(exit_ahead_, {});
     while (true) {
         if (!at_.valid() && !enter()) return !error_ && is_as_promised();
         if (has_arrived()) {
@@ -144,7 +146,7 @@ bool March::march_to_end() {
             return is_as_promised();
         }
         if (!within_budget()) return false;
-        Departure departure{Departure::Kind::ThroughEdge, std::exchange(exit_ahead_, {})};
+        Departure departure{Departure::Kind::ThroughEdge, std::exchange(known, {})};
         if (!departure.side.valid()) departure = leave(tin_, at_, end_, first_look());
         switch (departure.kind) {
             case Departure::Kind::AlongEdge:
