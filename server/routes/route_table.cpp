@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/route_table.hpp"
 
+#include <array>
+
 #include "api/requests.hpp"
 #include "server/routes/handlers.hpp"
 
 namespace tinsmith::server {
 
 namespace {
+
+constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
 
@@ -33,6 +37,11 @@ std::vector<Route> make_routes(Services& services) {
         {"POST", "/v1/sessions/{id}/polygons", polygons, to(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/polygons", {}, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
+        {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
+        {"POST", "/v1/sessions/{id}/undo", {}, to(undo_edit)},
+        {"POST", "/v1/sessions/{id}/redo", {}, to(redo_edit)},
+        {"GET", "/v1/sessions/{id}/history", {}, to(get_history)},
+        {"GET", "/v1/sessions/{id}/history/{version}", {}, to(get_change)},
         {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},
