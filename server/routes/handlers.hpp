@@ -34,6 +34,9 @@ Response redo_edit(Services&, const Request&, const PathArguments&);
 Response get_history(Services&, const Request&, const PathArguments&);
 Response get_change(Services&, const Request&, const PathArguments&);
 
+// delta_routes.cpp
+Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?since=
+
 // mesh_routes.cpp
 Response get_mesh(Services&, const Request&, const PathArguments&);
 Response get_mesh_glb(Services&, const Request&, const PathArguments&);

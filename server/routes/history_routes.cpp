@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Back and forth: undo, redo, polygons taken out, and what is told of the past.
 #include <array>
-#include <charconv>
 #include <utility>
 
 #include "api/history.hpp"
@@ -102,13 +101,6 @@ Response send_change(const Request& request, Services& services, const Asked& as
         .with("Vary", "Accept");
 }
 
-std::optional<std::uint64_t> version_of(const std::string& text) {
-    std::uint64_t version = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, version);
-    return error == std::errc() && stop == end ? std::optional(version) : std::nullopt;
-}
-
 /// A polygons request's own report again; of another change what is told of it.
 std::string text_of(const Session& session, const ChangeCopy& change) {
     if (!change.report) return api::write_change(session.facts().id, change.view);
@@ -174,15 +166,13 @@ Response get_change(Services& services, const Request& request, const PathArgume
     const auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
-    const auto version = version_of(arguments[1]);
+    const auto version = parse_version(arguments[1]);
     const auto copy = session.change_at(version.value_or(0) == 0 ? UINT64_MAX : *version);
     if (const auto* gone = std::get_if<VersionGone>(&copy)) {
         return version_gone(request, session, *gone);
     }
     if (const auto* ahead = std::get_if<VersionAhead>(&copy)) {
-        return refuse(request, api::ProblemType::NoSuchVersion,
-                      "Versions are whole numbers from 1 to the current one, which is " +
-                          std::to_string(ahead->current) + ".");
+        return version_ahead(request, *ahead);
     }
     return ok(kJson, text_of(session, std::get<ChangeCopy>(copy)));
 }

@@ -176,6 +176,19 @@ std::string history_link(const Session& session, std::uint64_t version) {
            ">; rel=\"describedby\"";
 }
 
+std::optional<std::uint64_t> parse_version(std::string_view text) {
+    std::uint64_t version = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, version);
+    return error == std::errc() && stop == end ? std::optional(version) : std::nullopt;
+}
+
+Response version_ahead(const Request& request, const VersionAhead& ahead) {
+    return refuse(request, api::ProblemType::NoSuchVersion,
+                  "Versions are whole numbers from 1 to the current one, which is " +
+                      std::to_string(ahead.current) + ".");
+}
+
 Response version_gone(const Request& request, const Session& session, const VersionGone& gone) {
     return refuse(request, api::ProblemType::VersionGone,
                   "That version is no longer kept. The oldest kept is " +

@@ -60,6 +60,12 @@ Response delta_response(const Request& request, const Session& session, std::uin
 /// Where the report of a version stays, as a Link header has it.
 std::string history_link(const Session& session, std::uint64_t version);
 
+/// A version as it stands in a path or a query; nothing where that is no whole number.
+std::optional<std::uint64_t> parse_version(std::string_view text);
+
+/// 404: versions end at the current one.
+Response version_ahead(const Request& request, const VersionAhead& ahead);
+
 /// 410, naming the oldest version that is kept.
 Response version_gone(const Request& request, const Session& session, const VersionGone& gone);
 

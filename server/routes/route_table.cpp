@@ -14,6 +14,17 @@ constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
 
+/// The mesh itself takes one parameter more than its files.
+std::span<const std::string_view> mesh_parameters() {
+    static const std::vector<std::string_view> kNames = [] {
+        const auto options = api::mesh_option_names();
+        std::vector<std::string_view> names(options.begin(), options.end());
+        names.emplace_back("since");
+        return names;
+    }();
+    return kNames;
+}
+
 }  // namespace
 
 std::vector<Route> make_routes(Services& services) {
@@ -42,7 +53,7 @@ std::vector<Route> make_routes(Services& services) {
         {"POST", "/v1/sessions/{id}/redo", {}, to(redo_edit)},
         {"GET", "/v1/sessions/{id}/history", {}, to(get_history)},
         {"GET", "/v1/sessions/{id}/history/{version}", {}, to(get_change)},
-        {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},
+        {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},
     };

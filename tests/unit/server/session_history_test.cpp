@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 #include "core/mesh/build.hpp"
@@ -174,6 +177,33 @@ TEST(SessionHistory, GoesWithAFork) {
     EXPECT_EQ(s.view().polygons, 2U);
     fork->undo({});
     EXPECT_TRUE(test::same_tin(s.copy_tin(), fork->copy_tin()));
+}
+
+TEST(SessionHistory, OfTwoThatExpectTheSameVersionOneWins) {
+    Session s = make_session();
+    for (int i = 0; i < 20; ++i)
+        s.integrate(edit_of({ring(2, 4 + 0.1 * i)}));
+    std::atomic<int> done = 0;
+    std::atomic<int> refused = 0;
+    const auto race = [&] {
+        for (std::uint64_t version = 21; version < 41; ++version) {
+            while (s.view().version < version)
+                std::this_thread::yield();
+            ChangeRequest request;
+            request.expected_version = version;
+            request.want_delta = true;
+            const auto outcome = version % 4 == 0 ? s.redo(request) : s.undo(request);
+            ++(std::holds_alternative<ChangeResult>(outcome) ? done : refused);
+            EXPECT_LE(std::get<api::MeshDelta>(s.delta_since(version)).from, version);
+        }
+    };
+    std::thread one(race);
+    std::thread other(race);
+    one.join();
+    other.join();
+    EXPECT_EQ(done, 20);
+    EXPECT_EQ(refused, 20);
+    EXPECT_EQ(s.view().version, 41U);
 }
 
 /// A request as the test remembers it.
