@@ -47,9 +47,7 @@ std::vector<Polygon> History::polygons() const {
 }
 
 std::size_t History::polygon_count() const {
-    std::size_t count = 0;
-    for (const Settled& settled : settled_)
-        count += polygon_ids(*settled.operation).size();
+    std::size_t count = settled_polygons_;
     for (const AppliedPtr& applied : applied_)
         count += polygon_ids(*applied->operation).size();
     return count;
@@ -64,9 +62,7 @@ void History::prepare(std::size_t added) {
 }
 
 std::size_t History::memory_bytes() const {
-    std::size_t sum = 0;
-    for (const Settled& settled : settled_)
-        sum += settled.bytes;
+    std::size_t sum = settled_bytes_;
     for (const AppliedPtr& applied : applied_)
         sum += applied->lasting_bytes + applied->record_bytes;
     for (const Edit& edit : undoable_)
@@ -110,7 +106,9 @@ void History::keep(Change change) noexcept {
 
 void History::settle_oldest() noexcept {
     const AppliedPtr& oldest = applied_.front();
-    settled_.push_back({oldest->operation, oldest->report, oldest->lasting_bytes});
+    settled_.push_back({oldest->operation, oldest->report});
+    settled_bytes_ += oldest->lasting_bytes;
+    settled_polygons_ += polygon_ids(*oldest->operation).size();
     applied_.erase(applied_.begin());
     // Undo goes from the newest on: what is older than one that is out of reach is so too.
     const auto last = std::find_if(undoable_.rbegin(), undoable_.rend(),

@@ -79,7 +79,7 @@ class History {
     /// All polygons that lie in the mesh, in the order in which they came.
     std::vector<Polygon> polygons() const;
     std::size_t polygon_count() const;
-    /// About what is held beside the mesh. Cost: linear in what is kept.
+    /// About what is held beside the mesh. Cost: linear in the edits that are kept.
     std::size_t memory_bytes() const;
 
     /// Makes room, so that one change with so many new operations takes no memory.
@@ -95,7 +95,6 @@ class History {
     struct Settled {
         OperationPtr operation;
         std::shared_ptr<const core::Report> report;
-        std::size_t bytes = 0;
     };
 
     void replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept;
@@ -106,6 +105,8 @@ class History {
     HistoryLimits limits_;
     std::vector<Change> changes_;
     std::vector<Settled> settled_;  ///< the base, beside what the session was made of
+    std::size_t settled_bytes_ = 0;
+    std::size_t settled_polygons_ = 0;
     std::vector<AppliedPtr> applied_;
     std::vector<Edit> undoable_;
     std::vector<Edit> redoable_;  ///< the next one last

@@ -50,8 +50,8 @@ class Guard {
     bool kept_ = false;
 };
 
-core::Result<AppliedPtr> run_polygons(core::Tin& tin, const PolygonsOperation& polygons,
-                                      std::shared_ptr<Applied> applied, const RunLimits& limits) {
+core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polygons,
+                                  std::shared_ptr<Applied> applied, const RunLimits& limits) {
     core::IntegrateOptions options = polygons.options;
     options.cancelled = limits.cancelled;
     options.clock_ms = limits.clock_ms;
@@ -71,26 +71,15 @@ core::Result<AppliedPtr> run_polygons(core::Tin& tin, const PolygonsOperation& p
     return AppliedPtr(std::move(applied));
 }
 
-}  // namespace
-
-core::Result<AppliedPtr> run(core::Tin& tin, std::uint64_t version, OperationPtr operation,
-                             const RunLimits& limits) {
-    auto applied = std::make_shared<Applied>();
-    applied->version = version;
-    applied->operation = std::move(operation);
-    const Operation& what = *applied->operation;
-    return run_polygons(tin, std::get<PolygonsOperation>(what), std::move(applied), limits);
+/// Polygons stand on the ground alone, never on one another by name.
+bool names(const PolygonsOperation&, std::string_view) {
+    return false;
 }
 
-bool names_polygon(const Operation& operation, std::string_view) {
-    // Polygons stand on the ground alone, never on one another by name.
-    return !std::holds_alternative<PolygonsOperation>(operation);
-}
-
-Remainder without_polygon(const OperationPtr& operation, std::string_view id) {
-    const auto& polygons = std::get<PolygonsOperation>(*operation);
+Remainder without(const PolygonsOperation& polygons, const OperationPtr& whole,
+                  std::string_view id) {
     const auto found = std::find(polygons.ids.begin(), polygons.ids.end(), id);
-    if (found == polygons.ids.end()) return {false, operation};
+    if (found == polygons.ids.end()) return {false, whole};
     if (polygons.ids.size() == 1) return {true, nullptr};
     PolygonsOperation rest = polygons;
     const auto place = found - polygons.ids.begin();
@@ -100,8 +89,36 @@ Remainder without_polygon(const OperationPtr& operation, std::string_view id) {
     return {true, std::make_shared<const Operation>(std::move(rest))};
 }
 
+const std::vector<std::string>& ids_of(const PolygonsOperation& polygons) {
+    return polygons.ids;
+}
+
+}  // namespace
+
+// Each visits by overload: a kind that lacks one of them does not compile.
+
+core::Result<AppliedPtr> run(core::Tin& tin, std::uint64_t version, OperationPtr operation,
+                             const RunLimits& limits) {
+    auto applied = std::make_shared<Applied>();
+    applied->version = version;
+    applied->operation = std::move(operation);
+    const Operation& any = *applied->operation;
+    return std::visit(
+        [&](const auto& kind) { return run_kind(tin, kind, std::move(applied), limits); }, any);
+}
+
+bool names_polygon(const Operation& operation, std::string_view id) {
+    return std::visit([id](const auto& kind) { return names(kind, id); }, operation);
+}
+
+Remainder without_polygon(const OperationPtr& operation, std::string_view id) {
+    return std::visit([&](const auto& kind) { return without(kind, operation, id); }, *operation);
+}
+
 const std::vector<std::string>& polygon_ids(const Operation& operation) {
-    return std::get<PolygonsOperation>(operation).ids;
+    return std::visit(
+        [](const auto& kind) -> const std::vector<std::string>& { return ids_of(kind); },
+        operation);
 }
 
 }  // namespace tinsmith::server

@@ -15,8 +15,8 @@
 
 namespace tinsmith::server {
 
-/// What a session was told to do, whole enough to be done again. Each kind is one alternative;
-/// `run`, `names_polygon` and `without_polygon` say what a kind has to know.
+/// What a session was told to do, whole enough to be done again. Each kind is one alternative; the
+/// functions below say what a kind has to know of itself.
 using Operation = std::variant<PolygonsOperation>;
 using OperationPtr = std::shared_ptr<const Operation>;
 

@@ -60,7 +60,7 @@ struct Session::Replacement {
     std::uint64_t of = 0;
     std::vector<std::string> polygons;
     std::size_t first = 0;      ///< the place of the oldest operation to be taken back
-    std::vector<Rerun> wanted;  ///< what is to be there and after it
+    std::vector<Rerun> wanted;  ///< what is to be run in their place
 };
 
 ChangeOutcome Session::undo(const ChangeRequest& request) {
