@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
+#include <new>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -127,6 +128,29 @@ TEST(SessionHistory, WorkThatIsStoppedChangesNothing) {
     EXPECT_EQ(s.view().version, 4U);
     EXPECT_EQ(version_of(s.redo({})), 5U);
     EXPECT_TRUE(test::same_tin(s.copy_tin(), before));
+}
+
+TEST(SessionHistory, AnExceptionInTheWorkChangesNothing) {
+    Session s = make_session();
+    s.integrate(edit_of({ring(2, 6)}));
+    s.integrate(edit_of({ring(3, 7)}));
+    s.integrate(edit_of({ring(4, 8)}));
+    s.undo({});
+    const core::Tin before = s.copy_tin();
+    const auto no_memory = []() -> bool { throw std::bad_alloc(); };
+    ChangeRequest fails;
+    fails.limits.cancelled = no_memory;
+    PolygonEdit edit = edit_of({ring(1, 9)});
+    edit.options.cancelled = no_memory;
+    EXPECT_THROW(s.integrate(std::move(edit)), std::bad_alloc);
+    EXPECT_THROW(s.redo(fails), std::bad_alloc);
+    EXPECT_THROW(s.remove_polygon("p1", false, fails), std::bad_alloc);
+    EXPECT_TRUE(test::same_tin(s.copy_tin(), before));
+    EXPECT_EQ(s.view().version, 5U);
+    EXPECT_EQ(s.view().polygons, 2U);
+    EXPECT_EQ(s.history().undo, 3U);
+    EXPECT_EQ(s.history().redo, 4U);
+    EXPECT_EQ(s.history().changes.size(), 5U);
 }
 
 TEST(SessionHistory, HonoursTheExpectedVersion) {
