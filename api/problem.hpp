@@ -35,6 +35,13 @@ enum class ProblemType {
     EditRefused,      ///< the core refused: the place and reason are in errors[]
     BudgetExceeded,   ///< the work would pass a limit; errors[] names it
     IdTaken,          ///< the id of choice exists
+    NothingToUndo,
+    NothingToRedo,
+    PolygonSettled,  ///< its operation is no longer kept: it is part of the base
+    PolygonInUse,    ///< edits name it
+    ReplayFailed,    ///< an operation that came later cannot be done without what goes
+    NoSuchVersion,   ///< not yet
+    VersionGone,     ///< no longer kept
     TooManySessions,
     OutOfMemory,
     Stopped,  ///< the work was cancelled: time limit or shutdown

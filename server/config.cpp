@@ -83,6 +83,12 @@ void add_limits(CLI::App& app, Limits& limits) {
     add("max_sessions", limits.max_sessions, "Sessions at the same time")->check(digit_first());
     add("max_vertices", limits.max_vertices, "Vertices of a terrain")->check(digit_first());
     add("max_triangles", limits.max_triangles, "Triangles of a session")->check(digit_first());
+    add("max_history", limits.max_history, "Operations that a session can take back")
+        ->check(digit_first())
+        ->check(CLI::PositiveNumber);
+    add("max_history_bytes", limits.max_history_bytes, "What they may hold, for one session")
+        ->transform(bytes)
+        ->transform(digit_first());
     add("max_crossings", limits.max_crossings, "Edges crossed by one request")
         ->check(digit_first());
     add("max_edit_seconds", limits.max_edit_seconds, "Time for one edit")

@@ -25,20 +25,21 @@ api::DrapedPolygon drape(const core::Tin& tin, const core::ConstraintHistory& hi
                          const Polygon& polygon) {
     const core::ShapeReport& report = polygon.own_report();
     api::DrapedPolygon draped;
-    draped.id = polygon.id;
-    draped.client_id = polygon.origin.client_id;
-    draped.properties = polygon.origin.properties;
-    draped.type = polygon.origin.type;
-    draped.paths = polygon.origin.paths;
-    draped.polygon_starts = polygon.origin.polygon_starts;
+    draped.id = polygon.id();
+    draped.client_id = polygon.origin().client_id;
+    draped.properties = polygon.origin().properties;
+    draped.type = polygon.origin().type;
+    draped.paths = polygon.origin().paths;
+    draped.polygon_starts = polygon.origin().polygon_starts;
     draped.partly_outside = !report.outside.empty();
     for (const core::Chain& chain : report.chains) {
         if (!chain.vertices.empty()) draped.lines.push_back(drape_chain(tin, history, chain));
     }
-    if (is_polygonal(polygon.origin.type)) {
-        const core::Region region = core::find_region(
-            tin, history, {polygon.outline, report.chains, report.outside}, polygon.winding);
-        draped.region = {polygon.winding, region.plan_area, region.surface_area,
+    if (is_polygonal(polygon.origin().type)) {
+        const core::Region region =
+            core::find_region(tin, history, {polygon.outline(), report.chains, report.outside},
+                              polygon.request.winding);
+        draped.region = {polygon.request.winding, region.plan_area, region.surface_area,
                          region.triangles.size()};
     }
     return draped;

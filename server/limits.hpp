@@ -10,11 +10,13 @@ namespace tinsmith::server {
 struct Limits {
     std::size_t max_body_bytes = std::size_t{256} << 20;
     std::size_t max_sessions = 64;
-    std::size_t max_memory_bytes = std::size_t{8} << 30;  ///< of all meshes together
-    std::size_t max_vertices = 10'000'000;                ///< of one session
-    std::size_t max_triangles = 20'000'000;               ///< of one session
-    std::uint64_t max_crossings = 50'000'000;             ///< of one request
-    double max_edit_seconds = 60.0;                       ///< of one request
+    std::size_t max_memory_bytes = std::size_t{8} << 30;     ///< of all meshes together
+    std::size_t max_vertices = 10'000'000;                   ///< of one session
+    std::size_t max_triangles = 20'000'000;                  ///< of one session
+    std::size_t max_history = 1000;                          ///< operations that a session keeps
+    std::size_t max_history_bytes = std::size_t{256} << 20;  ///< that they hold, of one session
+    std::uint64_t max_crossings = 50'000'000;                ///< of one request
+    double max_edit_seconds = 60.0;                          ///< of one request
 };
 
 /// Shape of a request before its body is read; see `check_request`.

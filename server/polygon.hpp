@@ -16,6 +16,7 @@
 #include "core/regions/region.hpp"
 #include "core/types/mesh_data.hpp"
 #include "core/types/result.hpp"
+#include "server/delta.hpp"
 
 namespace tinsmith::server {
 
@@ -28,16 +29,26 @@ struct PolygonOrigin {
     std::vector<std::size_t> polygon_starts;  ///< see api::RequestedShape
 };
 
-/// A polygon that was integrated. Its id is never given to another.
-struct Polygon {
-    std::string id;
-    PolygonOrigin origin;
-    core::Shape outline;  ///< its closed paths, as asked for, in plan; empty for lines and points
-    core::Winding winding = core::Winding::EvenOdd;  ///< what the outline's inside is
-    std::shared_ptr<const core::Report> report;      ///< of the request that brought it
-    std::size_t shape = 0;                           ///< its index there
+/// A polygons request as it is run, and run again when what came before it changes. It has no
+/// budgets, no clock and no cancel: those were the request's alone.
+struct PolygonsOperation {
+    std::vector<core::Shape> shapes;
+    std::vector<PolygonOrigin> origins;  ///< one for one with the shapes
+    std::vector<std::string> ids;        ///< likewise; none is ever given to another polygon
+    core::Winding winding = core::Winding::EvenOdd;  ///< what the shapes' inside is
+    core::IntegrateOptions options;
+};
 
-    const core::ShapeReport& own_report() const { return report->shapes[shape]; }
+/// A polygon that lies in the mesh. A view: it lives no longer than the session's lock is held.
+struct Polygon {
+    const PolygonsOperation& request;
+    const core::Report& report;  ///< of the run of that request that the mesh holds
+    std::size_t shape = 0;       ///< its index in both
+
+    const std::string& id() const { return request.ids[shape]; }
+    const PolygonOrigin& origin() const { return request.origins[shape]; }
+    const core::Shape& outline() const { return request.shapes[shape]; }
+    const core::ShapeReport& own_report() const { return report.shapes[shape]; }
 };
 
 /// The shapes of one request, and where each comes from (one for one with the shapes).
@@ -47,7 +58,8 @@ struct PolygonEdit {
     core::Winding winding = core::Winding::EvenOdd;
     core::IntegrateOptions options;
     bool dry_run = false;
-    bool want_mesh = false;  ///< the answer shall hold the mesh that came of it
+    bool want_mesh = false;   ///< the answer shall hold the mesh that came of it
+    bool want_delta = false;  ///< the answer shall hold what changed; not of a dry run
     std::optional<std::uint64_t> expected_version;  ///< from If-Match
     std::size_t max_triangles = SIZE_MAX;           ///< of the session after the edit
 };
@@ -58,6 +70,7 @@ struct PolygonResult {
     std::shared_ptr<const core::Report> report;
     /// If it was wanted. Absent all the same where memory ran out after the edit was made.
     std::optional<core::MeshData> mesh;
+    std::optional<api::MeshDelta> delta;  ///< likewise
 };
 
 struct VersionMismatch {

@@ -122,4 +122,10 @@ void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool
     };
 }
 
+RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping) {
+    PolygonEdit edit;
+    set_budgets(edit, limits, stopping);
+    return {std::move(edit.options.cancelled), std::move(edit.options.clock_ms)};
+}
+
 }  // namespace tinsmith::server

@@ -12,6 +12,7 @@
 #include "api/requests.hpp"
 #include "core/types/result.hpp"
 #include "server/limits.hpp"
+#include "server/operation.hpp"
 #include "server/polygon.hpp"
 
 namespace tinsmith::server {
@@ -40,5 +41,9 @@ api::Faults faults_of(const core::Errors& errors, const std::vector<api::Request
 /// Gives the edit its budgets, its clock and its end: a deadline from now, or `stopping`.
 /// Requires: `stopping` outlives the edit.
 void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping);
+
+/// The same for operations that are run again: a clock and an end, but no budget that could
+/// refuse what was granted once.
+RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping);
 
 }  // namespace tinsmith::server

@@ -10,6 +10,7 @@ namespace tinsmith::server {
 
 inline constexpr const char* kJson = "application/json";
 inline constexpr const char* kGeoJson = "application/geo+json";
+inline constexpr const char* kDelta = "application/vnd.tinsmith.delta";
 inline constexpr const char* kGlb = "model/gltf-binary";
 
 /// 200 with a body.

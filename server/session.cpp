@@ -12,7 +12,7 @@ namespace tinsmith::server {
 
 namespace {
 
-std::vector<std::string> polygon_ids(std::uint64_t first, std::size_t count) {
+std::vector<std::string> new_ids(std::uint64_t first, std::size_t count) {
     std::vector<std::string> ids;
     ids.reserve(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -21,18 +21,24 @@ std::vector<std::string> polygon_ids(std::uint64_t first, std::size_t count) {
 }
 
 /// The caller's budget, tightened to what the session may still grow by.
-core::IntegrateOptions options_for(const PolygonEdit& edit, const core::Tin& tin) {
-    core::IntegrateOptions options = edit.options;
+RunLimits limits_of(const PolygonEdit& edit, const core::Tin& tin) {
     const std::size_t room =
         edit.max_triangles - std::min(edit.max_triangles, tin.triangle_count());
-    options.max_new_triangles = std::min<std::uint64_t>(options.max_new_triangles, room);
-    return options;
+    return {edit.options.cancelled, edit.options.clock_ms, edit.options.max_crossings,
+            std::min<std::uint64_t>(edit.options.max_new_triangles, room)};
 }
 
-/// Room for so many more, growing by a factor as push_back does.
-void make_room(std::vector<Polygon>& polygons, std::size_t more) {
-    const std::size_t needed = polygons.size() + more;
-    if (needed > polygons.capacity()) polygons.reserve(std::max(needed, polygons.capacity() * 2));
+/// The edit as it is kept. Its budgets stay behind.
+OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
+    core::IntegrateOptions options = edit.options;
+    const core::IntegrateOptions free;
+    options.cancelled = nullptr;
+    options.clock_ms = nullptr;
+    options.max_crossings = free.max_crossings;
+    options.max_new_triangles = free.max_new_triangles;
+    return std::make_shared<const Operation>(
+        PolygonsOperation{std::move(edit.shapes), std::move(edit.origins), std::move(ids),
+                          edit.winding, std::move(options)});
 }
 
 /// The edit is made by now: want of memory must not look as if it had failed.
@@ -44,35 +50,16 @@ std::optional<core::MeshData> copy_if_possible(const core::Tin& tin) {
     }
 }
 
-/// Leaves the closed paths, in plan: what says where the inside is.
-void keep_outline(core::Shape& shape) noexcept {
-    std::erase_if(shape.paths, [](const core::Path& path) { return !path.closed; });
-    for (core::Path& path : shape.paths)
-        path.elevations = std::vector<double>();  // {} would keep the memory
-}
-
-/// About what a polygon holds in memory, its part of the report with it.
-std::size_t bytes_of(const Polygon& polygon) {
-    std::size_t sum = sizeof polygon + polygon.origin.properties.size() +
-                      polygon.origin.client_id.size() +
-                      polygon.origin.polygon_starts.size() * sizeof(std::size_t);
-    for (const core::Path& path : polygon.outline.paths)
-        sum += sizeof path + path.points.size() * sizeof(core::Point2);
-    for (const core::Chain& chain : polygon.own_report().chains)
-        sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
-    for (const core::OutsidePart& part : polygon.own_report().outside)
-        sum += sizeof part + part.points.size() * sizeof(core::Point2);
-    return sum;
-}
-
 bool is_expected(const PolygonEdit& edit, std::uint64_t version) {
     return !edit.expected_version || *edit.expected_version == version;
 }
 
 }  // namespace
 
-Session::Session(SessionFacts facts, core::Tin tin)
-    : facts_(std::move(facts)), tin_(std::move(tin)) {
+Session::Session(SessionFacts facts, core::Tin tin, HistoryLimits limits)
+    : facts_(std::move(facts)),
+      tin_(std::move(tin)),
+      history_(limits, tin_.vertex_count(), tin_.triangle_count()) {
     view_.id = facts_.id;
     view_.name = facts_.name;
     view_.crs = facts_.crs;
@@ -84,10 +71,8 @@ std::shared_ptr<Session> Session::fork(std::string id, std::string birth) const 
     const auto lock = lock_to_read();
     SessionFacts facts{std::move(id), std::move(birth), facts_.name, facts_.crs, facts_.unit};
     auto copy = std::make_shared<Session>(std::move(facts), tin_);
-    copy->version_ = version_;
+    copy->history_ = history_;
     copy->next_polygon_ = next_polygon_;
-    copy->polygon_bytes_ = polygon_bytes_;
-    copy->polygons_ = polygons_;
     copy->refresh_view();
     return copy;
 }
@@ -103,20 +88,25 @@ api::SessionView Session::view() const {
 
 MeshCopy Session::copy_mesh() const {
     const auto lock = lock_to_read();
-    return {tin_.to_data(), version_};
+    return {tin_.to_data(), version()};
+}
+
+core::Tin Session::copy_tin() const {
+    const auto lock = lock_to_read();
+    return tin_;
 }
 
 DrapedCopy Session::draped(std::optional<std::string_view> id) const {
     const auto lock = lock_to_read();
-    DrapedCopy copy{{}, version_};
-    std::vector<const Polygon*> wanted;
-    for (const Polygon& polygon : polygons_) {
-        if (!id || polygon.id == *id) wanted.push_back(&polygon);
+    DrapedCopy copy{{}, version()};
+    std::vector<Polygon> wanted;
+    for (const Polygon& polygon : history_.polygons()) {
+        if (!id || polygon.id() == *id) wanted.push_back(polygon);
     }
     if (wanted.empty()) return copy;
-    const core::ConstraintHistory history(tin_);
-    for (const Polygon* polygon : wanted)
-        copy.polygons.push_back(drape(tin_, history, *polygon));
+    const core::ConstraintHistory splits(tin_);
+    for (const Polygon& polygon : wanted)
+        copy.polygons.push_back(drape(tin_, splits, polygon));
     return copy;
 }
 
@@ -134,58 +124,69 @@ std::unique_lock<std::shared_mutex> Session::lock_to_write() const {
 /// Requires: the writer's lock, or nobody else about.
 void Session::refresh_view() noexcept {
     const std::lock_guard lock(view_mutex_);
-    view_.version = version_;
+    view_.version = version();
     view_.vertices = tin_.vertex_count();
     view_.triangles = tin_.triangle_count();
     view_.bounds = tin_.bounds();
-    view_.polygons = polygons_.size();
-    view_.memory_bytes = tin_.memory_bytes() + polygon_bytes_;
+    view_.polygons = history_.polygon_count();
+    view_.memory_bytes = tin_.memory_bytes() + history_.memory_bytes();
 }
 
 PolygonOutcome Session::integrate(PolygonEdit edit) {
     if (edit.dry_run) return integrate_dry(edit);
     const auto lock = lock_to_write();
-    if (!is_expected(edit, version_)) return VersionMismatch{version_};
+    const std::uint64_t before = version();
+    if (!is_expected(edit, before)) return VersionMismatch{before};
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
-    make_room(polygons_, edit.shapes.size());
-    const auto kept_report = std::make_shared<core::Report>();
+    const RunLimits limits = limits_of(edit, tin_);
     PolygonResult result;
-    result.polygon_ids = polygon_ids(next_polygon_, edit.shapes.size());
-    auto report = core::integrate(tin_, edit.shapes, options_for(edit, tin_));
-    if (!report) return std::move(report.errors());
-    *kept_report = std::move(*report);
-    result.report = kept_report;
-    result.version = ++version_;
-    keep_polygons(edit, result);
+    result.version = before + 1;
+    result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
+    const OperationPtr operation = operation_of(edit, result.polygon_ids);
+    Edit step;
+    step.version = result.version;
+    step.first = history_.base() + history_.applied().size();
+    step.added.push_back({result.version, operation});
+    step.polygons = result.polygon_ids;
+    std::vector<AppliedPtr> done(1);
+    Change change;
+    change.version = result.version;
+    change.kind = ChangeKind::Polygons;
+    change.polygons = result.polygon_ids;
+    change.written.resize(1);
+    history_.prepare(1);
+    auto applied = run(tin_, result.version, operation, limits);
+    if (!applied) return std::move(applied.errors());
+    result.report = (*applied)->report;
+    change.report = (*applied)->report;
+    change.vertices = tin_.vertex_count();
+    change.triangles = tin_.triangle_count();
+    change.written[0] = (*applied)->written;
+    step.added_bytes = (*applied)->lasting_bytes;
+    done[0] = std::move(*applied);
+    history_.make(std::move(step), std::move(done), std::move(change));
+    next_polygon_ += result.polygon_ids.size();
     refresh_view();
     if (edit.want_mesh) result.mesh = copy_if_possible(tin_);
+    if (edit.want_delta) result.delta = delta_if_possible(before);
     return result;
 }
 
 PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {
     auto lock = lock_to_read();
-    if (!is_expected(edit, version_)) return VersionMismatch{version_};
+    if (!is_expected(edit, version())) return VersionMismatch{version()};
     core::Tin trial = tin_;
     PolygonResult result;
-    result.version = version_;
-    result.polygon_ids = polygon_ids(next_polygon_, edit.shapes.size());
+    result.version = version();
+    result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
     lock.unlock();
-    auto report = core::integrate(trial, edit.shapes, options_for(edit, trial));
+    core::IntegrateOptions options = edit.options;
+    options.max_new_triangles = limits_of(edit, trial).max_new_triangles;
+    auto report = core::integrate(trial, edit.shapes, options);
     if (!report) return std::move(report.errors());
     result.report = std::make_shared<core::Report>(std::move(*report));
     if (edit.want_mesh) result.mesh = trial.to_data();
     return result;
-}
-
-void Session::keep_polygons(PolygonEdit& edit, const PolygonResult& result) noexcept {
-    for (std::size_t i = 0; i < edit.shapes.size(); ++i) {
-        keep_outline(edit.shapes[i]);
-        // The ids are short enough to be copied without taking memory.
-        polygons_.push_back({result.polygon_ids[i], std::move(edit.origins[i]),
-                             std::move(edit.shapes[i]), edit.winding, result.report, i});
-        polygon_bytes_ += bytes_of(polygons_.back());
-    }
-    next_polygon_ += edit.shapes.size();
 }
 
 }  // namespace tinsmith::server

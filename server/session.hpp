@@ -8,6 +8,7 @@
 #include <shared_mutex>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "api/formats/geojson_writer.hpp"
@@ -15,6 +16,8 @@
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
+#include "server/change.hpp"
+#include "server/history.hpp"
 #include "server/polygon.hpp"
 
 namespace tinsmith::server {
@@ -42,13 +45,14 @@ struct DrapedCopy {
 
 /// One terrain in memory: its mesh, its version and its polygons.
 ///
-/// Laws: one writer at a time, readers beside each other; an edit that fails leaves mesh, version
-/// and polygons as they were; a version is never used twice; nothing is encoded under a lock.
+/// Laws: one writer at a time, readers beside each other; an edit that fails leaves mesh, version,
+/// polygons and history as they were; a version is never used twice; nothing is encoded under a
+/// lock.
 class Session {
   public:
-    Session(SessionFacts facts, core::Tin tin);
+    Session(SessionFacts facts, core::Tin tin, HistoryLimits limits = {});
 
-    /// A session of its own with all that this one has now: mesh, version, polygons and the ids to
+    /// A session of its own with all that this one has now: mesh, version, history and the ids to
     /// come. Takes the readers' lock for the time of a copy.
     std::shared_ptr<Session> fork(std::string id, std::string birth) const;
 
@@ -58,6 +62,8 @@ class Session {
     /// As of the last finished edit: does not wait for one under way.
     api::SessionView view() const;
     MeshCopy copy_mesh() const;
+    /// The mesh with all that the core knows of it.
+    core::Tin copy_tin() const;
     /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
     /// it. Holds the readers' lock while their regions are found.
     DrapedCopy draped(std::optional<std::string_view> id = {}) const;
@@ -65,9 +71,29 @@ class Session {
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);
 
+    /// Takes the newest edit back that was not taken back.
+    ChangeOutcome undo(const ChangeRequest& request);
+    /// Does the edit again that was taken back last: the same bytes as before.
+    ChangeOutcome redo(const ChangeRequest& request);
+    /// Takes a polygon out. The mesh is then, byte for byte, that of a session which was given the
+    /// operations without it; edits that name it are refused, or go too. An edit itself, for undo.
+    ChangeOutcome remove_polygon(std::string_view id, bool cascade, const ChangeRequest& request);
+
+    HistoryCopy history() const;
+    /// How that version came about.
+    std::variant<ChangeCopy, VersionGone, VersionAhead> change_at(std::uint64_t version) const;
+    /// What leads from that version to the mesh as it is now. 0: the whole mesh.
+    std::variant<api::MeshDelta, VersionGone, VersionAhead> delta_since(
+        std::uint64_t version) const;
+
   private:
     PolygonOutcome integrate_dry(const PolygonEdit& edit) const;
-    void keep_polygons(PolygonEdit& edit, const PolygonResult& result) noexcept;
+    /// What `replace` does to the newest operations, and how that is kept.
+    struct Replacement;
+    ChangeOutcome replace(const ChangeRequest& request, Replacement replacement);
+    std::optional<api::MeshDelta> delta_if_possible(std::uint64_t from) const;
+    api::MeshDelta delta_from(const Change& start) const;
+    std::uint64_t version() const { return history_.version(); }
     void refresh_view() noexcept;
 
     std::shared_lock<std::shared_mutex> lock_to_read() const;
@@ -75,12 +101,10 @@ class Session {
 
     const SessionFacts facts_;
     mutable std::mutex turn_;  ///< held while waiting for the next, so that readers queue too
-    mutable std::shared_mutex mutex_;  ///< guards mesh, version and polygons
+    mutable std::shared_mutex mutex_;  ///< guards mesh, history and the next polygon's number
     core::Tin tin_;
-    std::uint64_t version_ = 1;
+    History history_;
     std::uint64_t next_polygon_ = 1;
-    std::size_t polygon_bytes_ = 0;  ///< of all that is kept of the polygons beside the mesh
-    std::vector<Polygon> polygons_;
 
     mutable std::mutex view_mutex_;  ///< guards the view; taken last and never held for long
     api::SessionView view_;

@@ -12,7 +12,8 @@ SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
                                       std::optional<std::string> id) {
     SessionFacts facts{id ? std::move(*id) : random_uuid(), random_hex(8), about.name, about.crs,
                        about.unit};
-    return keep(std::make_shared<Session>(std::move(facts), std::move(tin)));
+    const HistoryLimits history{limits_.max_history, limits_.max_history_bytes};
+    return keep(std::make_shared<Session>(std::move(facts), std::move(tin), history));
 }
 
 SessionStore::Added SessionStore::fork(const Session& session) {

@@ -27,6 +27,16 @@ Response integrate_polygons(Services&, const Request&, const PathArguments&);
 Response list_polygons(Services&, const Request&, const PathArguments&);
 Response get_polygon(Services&, const Request&, const PathArguments&);
 
+// history_routes.cpp
+Response delete_polygon(Services&, const Request&, const PathArguments&);
+Response undo_edit(Services&, const Request&, const PathArguments&);
+Response redo_edit(Services&, const Request&, const PathArguments&);
+Response get_history(Services&, const Request&, const PathArguments&);
+Response get_change(Services&, const Request&, const PathArguments&);
+
+// delta_routes.cpp
+Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?since=
+
 // mesh_routes.cpp
 Response get_mesh(Services&, const Request&, const PathArguments&);
 Response get_mesh_glb(Services&, const Request&, const PathArguments&);

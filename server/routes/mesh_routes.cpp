@@ -50,6 +50,7 @@ Response send_mesh(Services& services, const Request& request, const std::string
 }  // namespace
 
 Response get_mesh(Services& services, const Request& request, const PathArguments& arguments) {
+    if (request.parameter("since")) return get_delta(services, request, arguments);
     const auto type = require_media_type(request, kMeshTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     Response response =

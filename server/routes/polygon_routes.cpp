@@ -15,7 +15,7 @@ namespace tinsmith::server {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kGlb};
+constexpr std::array<std::string_view, 3> kAnswerTypes{kJson, kGlb, kDelta};
 constexpr std::array<std::string_view, 2> kFeatureTypes{kGeoJson, kJson};
 
 std::optional<Response> refusal_of_type(const Request& request) {
@@ -74,10 +74,17 @@ Response integrate_polygons(Services& services, const Request& request,
     }
 
     const bool as_glb = std::get<0>(type) == 1;
+    const bool as_delta = std::get<0>(type) == 2;
     work->edit.want_mesh = as_glb;
+    work->edit.want_delta = as_delta;
     work->edit.expected_version = std::get<0>(expected);
     set_budgets(work->edit, services.limits, services.stopping);
     const bool dry_run = work->edit.dry_run;
+    if (dry_run && as_delta) {
+        return refuse(request, api::ProblemType::InvalidParameter,
+                      "A dry run makes no version that a delta could lead to: leave dry_run out, "
+                      "or ask for application/json or model/gltf-binary.");
+    }
     auto outcome = session.integrate(std::move(work->edit));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, session, mismatch->current);
@@ -90,8 +97,10 @@ Response integrate_polygons(Services& services, const Request& request,
                       "The session was deleted while the edit ran: nothing of it is kept.");
     }
     const auto& result = std::get<PolygonResult>(outcome);
-    Response response = as_glb ? send_mesh_after(request, session, result, dry_run)
-                               : send_report(session, result, dry_run);
+    Response response = as_glb     ? send_mesh_after(request, session, result, dry_run)
+                        : as_delta ? delta_response(request, session, result.version, result.delta)
+                                   : send_report(session, result, dry_run);
+    if (!dry_run) response.with("Link", history_link(session, result.version));
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
 }
 

@@ -161,6 +161,41 @@ Response glb_response(const Request& request, const core::MeshData& mesh,
     return response;
 }
 
+Response delta_response(const Request& request, const Session& session, std::uint64_t version,
+                        const std::optional<api::MeshDelta>& delta) {
+    if (delta) return ok(kDelta, api::write_delta(*delta));
+    return refuse(request, api::ProblemType::OutOfMemory,
+                  "There is no memory to send the delta now: get it later from /v1/sessions/" +
+                      session.facts().id + "/mesh?since=" + std::to_string(version - 1) +
+                      ". The edit was made: the session has version " + std::to_string(version) +
+                      ".");
+}
+
+std::string history_link(const Session& session, std::uint64_t version) {
+    return "</v1/sessions/" + session.facts().id + "/history/" + std::to_string(version) +
+           ">; rel=\"describedby\"";
+}
+
+std::optional<std::uint64_t> parse_version(std::string_view text) {
+    std::uint64_t version = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, version);
+    return error == std::errc() && stop == end ? std::optional(version) : std::nullopt;
+}
+
+Response version_ahead(const Request& request, const VersionAhead& ahead) {
+    return refuse(request, api::ProblemType::NoSuchVersion,
+                  "Versions are whole numbers from 1 to the current one, which is " +
+                      std::to_string(ahead.current) + ".");
+}
+
+Response version_gone(const Request& request, const Session& session, const VersionGone& gone) {
+    return refuse(request, api::ProblemType::VersionGone,
+                  "That version is no longer kept. The oldest kept is " +
+                      std::to_string(gone.oldest) + "; /v1/sessions/" + session.facts().id +
+                      "/mesh?since=0 is the whole mesh.");
+}
+
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request) {
     const std::size_t most = services.limits.max_memory_bytes;
     if (services.sessions.memory_bytes() <= most) return std::nullopt;

@@ -53,6 +53,22 @@ std::vector<api::NamedOption> options_of_query(const Request& request);
 Response glb_response(const Request& request, const core::MeshData& mesh,
                       const api::GltfOptions& options, const std::string& note = {});
 
+/// What changed, or why it cannot be sent though the edit was made.
+Response delta_response(const Request& request, const Session& session, std::uint64_t version,
+                        const std::optional<api::MeshDelta>& delta);
+
+/// Where the report of a version stays, as a Link header has it.
+std::string history_link(const Session& session, std::uint64_t version);
+
+/// A version as it stands in a path or a query; nothing where that is no whole number.
+std::optional<std::uint64_t> parse_version(std::string_view text);
+
+/// 404: versions end at the current one.
+Response version_ahead(const Request& request, const VersionAhead& ahead);
+
+/// 410, naming the oldest version that is kept.
+Response version_gone(const Request& request, const Session& session, const VersionGone& gone);
+
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/route_table.hpp"
 
+#include <array>
+
 #include "api/requests.hpp"
 #include "server/routes/handlers.hpp"
 
@@ -8,7 +10,20 @@ namespace tinsmith::server {
 
 namespace {
 
+constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
+
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
+
+/// The mesh itself takes one parameter more than its files.
+std::span<const std::string_view> mesh_parameters() {
+    static const std::vector<std::string_view> kNames = [] {
+        const auto options = api::mesh_option_names();
+        std::vector<std::string_view> names(options.begin(), options.end());
+        names.emplace_back("since");
+        return names;
+    }();
+    return kNames;
+}
 
 }  // namespace
 
@@ -33,7 +48,12 @@ std::vector<Route> make_routes(Services& services) {
         {"POST", "/v1/sessions/{id}/polygons", polygons, to(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/polygons", {}, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
-        {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},
+        {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
+        {"POST", "/v1/sessions/{id}/undo", {}, to(undo_edit)},
+        {"POST", "/v1/sessions/{id}/redo", {}, to(redo_edit)},
+        {"GET", "/v1/sessions/{id}/history", {}, to(get_history)},
+        {"GET", "/v1/sessions/{id}/history/{version}", {}, to(get_change)},
+        {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},
     };

@@ -24,12 +24,14 @@ Response get_health(Services&, const Request&, const PathArguments&) {
 
 Response get_limits(Services& services, const Request&, const PathArguments&) {
     const Limits& limits = services.limits;
-    const std::array<std::pair<std::string_view, double>, 7> list{{
+    const std::array<std::pair<std::string_view, double>, 9> list{{
         {"max_body_bytes", static_cast<double>(limits.max_body_bytes)},
         {"max_sessions", static_cast<double>(limits.max_sessions)},
         {"max_memory_bytes", static_cast<double>(limits.max_memory_bytes)},
         {"max_vertices", static_cast<double>(limits.max_vertices)},
         {"max_triangles", static_cast<double>(limits.max_triangles)},
+        {"max_history", static_cast<double>(limits.max_history)},
+        {"max_history_bytes", static_cast<double>(limits.max_history_bytes)},
         {"max_crossings", static_cast<double>(limits.max_crossings)},
         {"max_edit_seconds", limits.max_edit_seconds},
     }};

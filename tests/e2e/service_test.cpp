@@ -56,6 +56,29 @@ class Service : public testing::Test {
     static inline ServerUnderTest* server = nullptr;
 };
 
+TEST_F(Service, GoesBackAndForth) {
+    const std::string session = make_session();
+    const std::string polygon = R"({"type": "Polygon",
+        "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]})";
+    const std::string as_delta = "Accept: application/vnd.tinsmith.delta";
+    const std::string before = ask(port(), "GET", session + "/mesh.json").body;
+    const Answer made = ask(port(), "POST", session + "/polygons", {kJson, as_delta}, polygon);
+    EXPECT_EQ(made.status, 200);
+    EXPECT_EQ(made.header("content-type"), "application/vnd.tinsmith.delta");
+    EXPECT_EQ(made.body.substr(0, 4), "TNDL");
+    EXPECT_EQ(ask(port(), "GET", session + "/mesh?since=1", {as_delta}).body, made.body);
+    const std::string after = ask(port(), "GET", session + "/mesh.json").body;
+    EXPECT_EQ(ask(port(), "POST", session + "/undo").status, 200);
+    EXPECT_EQ(ask(port(), "GET", session + "/mesh.json").body, before);
+    EXPECT_EQ(ask(port(), "POST", session + "/redo").status, 200);
+    EXPECT_EQ(ask(port(), "GET", session + "/mesh.json").body, after);
+    EXPECT_EQ(ask(port(), "DELETE", session + "/polygons/p1").status, 200);
+    EXPECT_EQ(ask(port(), "GET", session + "/mesh.json").body, before);
+    expect_problem(ask(port(), "POST", session + "/redo"), 409);
+    expect_problem(ask(port(), "GET", session + "/mesh?since=6"), 404);
+    EXPECT_EQ(json::parse(ask(port(), "GET", session + "/history").body)["changes"].size(), 5U);
+}
+
 TEST_F(Service, KeepsAConnectionForMoreThanFiveRequests) {
     Connection connection(port());
     for (int i = 0; i < 50; ++i) {

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "api/formats/delta.hpp"
+#include "api/history.hpp"
+#include "core/integrate/report.hpp"
+#include "server/operation.hpp"
+#include "server/polygon.hpp"
+#include "server/replay.hpp"
+
+namespace tinsmith::server {
+
+/// What undo, redo and the removal of a polygon are asked with.
+struct ChangeRequest {
+    std::optional<std::uint64_t> expected_version = {};  ///< from If-Match
+    bool want_delta = false;
+    RunLimits limits = {};  ///< of what has to be run again
+};
+
+/// How a version came about, copied out.
+struct ChangeCopy {
+    api::ChangeView view;
+    std::shared_ptr<const core::Report> report;  ///< of a polygons request, else null
+};
+
+struct ChangeResult {
+    ChangeCopy change;
+    /// If it was wanted. Absent all the same where memory ran out after the change was made.
+    std::optional<api::MeshDelta> delta;
+};
+
+/// All edits are taken back, or none is.
+struct NothingToDo {};
+
+struct NoSuchPolygon {};
+
+/// The polygon's operation is older than what the session keeps: it is part of the base.
+struct PolygonSettled {};
+
+/// Edits work on the polygon; the versions that they made.
+struct PolygonInUse {
+    std::vector<std::uint64_t> versions;
+};
+
+using ChangeOutcome = std::variant<ChangeResult, VersionMismatch, NothingToDo, NoSuchPolygon,
+                                   PolygonSettled, PolygonInUse, ReplayFailure>;
+
+/// The version is older than what is kept.
+struct VersionGone {
+    std::uint64_t oldest = 0;
+};
+
+/// The version does not exist yet.
+struct VersionAhead {
+    std::uint64_t current = 0;
+};
+
+/// The history, copied out.
+struct HistoryCopy {
+    std::uint64_t version = 0;
+    std::optional<std::uint64_t> undo;  ///< the version that undo would take back
+    std::optional<std::uint64_t> redo;  ///< the version whose edit redo would do again
+    std::vector<api::ChangeView> changes;
+};
+
+}  // namespace tinsmith::server

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/delta.hpp"
+#include "server/operation.hpp"
+
+namespace tinsmith::server {
+
+/// How much of its past a session keeps.
+struct HistoryLimits {
+    std::size_t operations = 1000;
+    std::size_t bytes = std::size_t{256} << 20;
+};
+
+enum class ChangeKind { Created, Polygons, Undo, Redo, Removal };
+
+/// How a version came about. Every version has one.
+struct Change {
+    std::uint64_t version = 0;
+    ChangeKind kind = ChangeKind::Created;
+    std::uint64_t of = 0;                        ///< undo, redo: the version they are about
+    std::vector<std::string> polygons;           ///< that it brought, took out, or is about
+    std::shared_ptr<const core::Report> report;  ///< of a polygons request
+    std::size_t vertices = 0;                    ///< of the mesh at that version
+    std::size_t triangles = 0;
+    std::vector<std::shared_ptr<const SlotChanges>> written;  ///< since the version before
+};
+
+/// An operation to be run, and the version under which it is known.
+struct Rerun {
+    std::uint64_t version = 0;
+    OperationPtr operation;
+};
+
+/// An edit as undo and redo see it: from place `first` on, operations that the mesh held gave way
+/// to others. A polygons request adds one and takes none. Operations alone are kept, to be run
+/// again: the same on the same mesh gives the same bytes.
+struct Edit {
+    std::uint64_t version = 0;
+    std::size_t first = 0;  ///< counted from the session's creation
+    std::vector<Rerun> removed;
+    std::vector<Rerun> added;
+    std::vector<std::string> polygons;
+    std::size_t removed_bytes = 0;  ///< about what these operations hold in memory
+    std::size_t added_bytes = 0;
+};
+
+/// What a session keeps of its past: the operations that its mesh holds, the edits that undo and
+/// redo go through, and how each version came about.
+///
+/// Laws: versions only grow, also by undo and redo; a new edit drops what could be redone; beyond
+/// the limits the oldest goes first, and an operation that goes becomes part of the base: its
+/// polygons stay, but are not taken out any more. The newest edit can always be undone.
+/// After `prepare`, the next change to the history cannot fail.
+class History {
+  public:
+    History(HistoryLimits limits, std::size_t vertices, std::size_t triangles);
+
+    std::uint64_t version() const { return changes_.back().version; }
+    /// How the versions that are kept came about, oldest first; each follows on the one before.
+    const std::vector<Change>& changes() const { return changes_; }
+    const Change* change_at(std::uint64_t version) const;
+    /// Those that can be taken back, oldest first.
+    const std::vector<AppliedPtr>& applied() const { return applied_; }
+    /// The place of the first of these, counted from the session's creation.
+    std::size_t base() const { return settled_.size(); }
+    /// What undo and redo come to next; null: nothing.
+    const Edit* undoable() const { return undoable_.empty() ? nullptr : &undoable_.back(); }
+    const Edit* redoable() const { return redoable_.empty() ? nullptr : &redoable_.back(); }
+
+    /// All polygons that lie in the mesh, in the order in which they came.
+    std::vector<Polygon> polygons() const;
+    std::size_t polygon_count() const;
+    /// About what is held beside the mesh. Cost: linear in the edits that are kept.
+    std::size_t memory_bytes() const;
+
+    /// Makes room, so that one change with so many new operations takes no memory.
+    void prepare(std::size_t added);
+    /// A new edit was made: these were run for it, in place of all from its place on.
+    void make(Edit edit, std::vector<AppliedPtr> done, Change change) noexcept;
+    /// The newest edit was taken back; these were run for it.
+    void undo(std::vector<AppliedPtr> done, Change change) noexcept;
+    /// The edit taken back last was made again; these were run for it.
+    void redo(std::vector<AppliedPtr> done, Change change) noexcept;
+
+  private:
+    struct Settled {
+        OperationPtr operation;
+        std::shared_ptr<const core::Report> report;
+    };
+
+    void replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept;
+    void keep(Change change) noexcept;
+    void settle_oldest() noexcept;
+    void shrink() noexcept;
+
+    HistoryLimits limits_;
+    std::vector<Change> changes_;
+    std::vector<Settled> settled_;  ///< the base, beside what the session was made of
+    std::size_t settled_bytes_ = 0;
+    std::size_t settled_polygons_ = 0;
+    std::vector<AppliedPtr> applied_;
+    std::vector<Edit> undoable_;
+    std::vector<Edit> redoable_;  ///< the next one last
+};
+
+}  // namespace tinsmith::server

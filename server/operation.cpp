@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/operation.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tinsmith::server {
+
+namespace {
+
+/// About what one shape of a request holds in memory, its part of the report with it.
+std::size_t bytes_of(const PolygonsOperation& operation, const core::Report& report,
+                     std::size_t shape) {
+    const PolygonOrigin& origin = operation.origins[shape];
+    std::size_t sum = sizeof(core::Shape) + sizeof origin + sizeof(core::ShapeReport) +
+                      origin.properties.size() + origin.client_id.size() +
+                      origin.polygon_starts.size() * sizeof(std::size_t);
+    for (const core::Path& path : operation.shapes[shape].paths)
+        sum += sizeof path + path.points.size() * sizeof(core::Point2) +
+               path.elevations.size() * sizeof(double);
+    for (const core::Chain& chain : report.shapes[shape].chains)
+        sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
+    for (const core::OutsidePart& part : report.shapes[shape].outside)
+        sum += sizeof part + part.points.size() * sizeof(core::Point2);
+    return sum;
+}
+
+std::size_t bytes_of(const core::Undo& undo, const SlotChanges& written) {
+    std::size_t sum = sizeof(Applied);
+    for (const core::UndoRecord& record : undo)
+        sum += sizeof record + record.triangles.size() * sizeof record.triangles[0] +
+               record.vertices.size() * sizeof record.vertices[0];
+    return sum + (written.vertices.size() + written.triangles.size()) * sizeof(std::uint32_t);
+}
+
+/// Takes an operation back unless told to keep it.
+class Guard {
+  public:
+    Guard(core::Tin& tin, const core::Undo& undo) : tin_(tin), undo_(undo) {}
+    Guard(const Guard&) = delete;
+    Guard& operator=(const Guard&) = delete;
+    ~Guard() {
+        if (!kept_) core::take_back(tin_, undo_);
+    }
+    void keep() { kept_ = true; }
+
+  private:
+    core::Tin& tin_;
+    const core::Undo& undo_;
+    bool kept_ = false;
+};
+
+core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polygons,
+                                  std::shared_ptr<Applied> applied, const RunLimits& limits) {
+    core::IntegrateOptions options = polygons.options;
+    options.cancelled = limits.cancelled;
+    options.clock_ms = limits.clock_ms;
+    options.max_crossings = limits.max_crossings;
+    options.max_new_triangles = limits.max_new_triangles;
+    const auto kept_report = std::make_shared<core::Report>();
+    auto report = core::integrate(tin, polygons.shapes, options, &applied->undo);
+    if (!report) return std::move(report.errors());
+    Guard guard(tin, applied->undo);
+    *kept_report = std::move(*report);
+    applied->written = std::make_shared<SlotChanges>(slot_changes(tin, applied->undo));
+    for (std::size_t i = 0; i < polygons.shapes.size(); ++i)
+        applied->lasting_bytes += bytes_of(polygons, *kept_report, i);
+    applied->record_bytes = bytes_of(applied->undo, *applied->written);
+    applied->report = kept_report;
+    guard.keep();
+    return AppliedPtr(std::move(applied));
+}
+
+/// Polygons stand on the ground alone, never on one another by name.
+bool names(const PolygonsOperation&, std::string_view) {
+    return false;
+}
+
+Remainder without(const PolygonsOperation& polygons, const OperationPtr& whole,
+                  std::string_view id) {
+    const auto found = std::find(polygons.ids.begin(), polygons.ids.end(), id);
+    if (found == polygons.ids.end()) return {false, whole};
+    if (polygons.ids.size() == 1) return {true, nullptr};
+    PolygonsOperation rest = polygons;
+    const auto place = found - polygons.ids.begin();
+    rest.ids.erase(rest.ids.begin() + place);
+    rest.shapes.erase(rest.shapes.begin() + place);
+    rest.origins.erase(rest.origins.begin() + place);
+    return {true, std::make_shared<const Operation>(std::move(rest))};
+}
+
+const std::vector<std::string>& ids_of(const PolygonsOperation& polygons) {
+    return polygons.ids;
+}
+
+}  // namespace
+
+// Each visits by overload: a kind that lacks one of them does not compile.
+
+core::Result<AppliedPtr> run(core::Tin& tin, std::uint64_t version, OperationPtr operation,
+                             const RunLimits& limits) {
+    auto applied = std::make_shared<Applied>();
+    applied->version = version;
+    applied->operation = std::move(operation);
+    const Operation& any = *applied->operation;
+    return std::visit(
+        [&](const auto& kind) { return run_kind(tin, kind, std::move(applied), limits); }, any);
+}
+
+bool names_polygon(const Operation& operation, std::string_view id) {
+    return std::visit([id](const auto& kind) { return names(kind, id); }, operation);
+}
+
+Remainder without_polygon(const OperationPtr& operation, std::string_view id) {
+    return std::visit([&](const auto& kind) { return without(kind, operation, id); }, *operation);
+}
+
+const std::vector<std::string>& polygon_ids(const Operation& operation) {
+    return std::visit(
+        [](const auto& kind) -> const std::vector<std::string>& { return ids_of(kind); },
+        operation);
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/integrate/integrator.hpp"
+#include "server/delta.hpp"
+#include "server/polygon.hpp"
+
+namespace tinsmith::server {
+
+/// What a session was told to do, whole enough to be done again. Each kind is one alternative; the
+/// functions below say what a kind has to know of itself.
+using Operation = std::variant<PolygonsOperation>;
+using OperationPtr = std::shared_ptr<const Operation>;
+
+/// What one run of an operation may cost. Never kept with the operation.
+struct RunLimits {
+    std::function<bool()> cancelled = {};
+    std::function<double()> clock_ms = {};
+    std::uint64_t max_crossings = UINT64_MAX;
+    std::uint64_t max_new_triangles = UINT64_MAX;
+};
+
+/// An operation that the mesh holds, with all that takes it back bit for bit. Never changed once
+/// made, so that forks of a session share it.
+struct Applied {
+    std::uint64_t version = 0;  ///< of the session when it was first done
+    OperationPtr operation;
+    std::shared_ptr<const core::Report> report;
+    core::Undo undo;
+    std::shared_ptr<const SlotChanges> written;
+    std::size_t lasting_bytes = 0;  ///< about what operation and report hold in memory
+    std::size_t record_bytes = 0;   ///< about what taking it back holds
+};
+using AppliedPtr = std::shared_ptr<const Applied>;
+
+/// Does the operation. An error, or an exception, leaves the mesh as it was.
+core::Result<AppliedPtr> run(core::Tin& tin, std::uint64_t version, OperationPtr operation,
+                             const RunLimits& limits);
+
+/// Whether the operation works on a polygon that another one brought.
+bool names_polygon(const Operation& operation, std::string_view id);
+
+/// What is left of an operation when a polygon has never been.
+struct Remainder {
+    bool brought_it = false;
+    OperationPtr rest;  ///< null: nothing
+};
+Remainder without_polygon(const OperationPtr& operation, std::string_view id);
+
+/// The ids that the operation brings; none for kinds that bring no polygon.
+const std::vector<std::string>& polygon_ids(const Operation& operation);
+
+}  // namespace tinsmith::server

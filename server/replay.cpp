@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/replay.hpp"
+
+#include <utility>
+
+namespace tinsmith::server {
+
+namespace {
+
+void take_back_all(core::Tin& tin, std::span<const AppliedPtr> taken) {
+    for (auto applied = taken.rbegin(); applied != taken.rend(); ++applied)
+        core::take_back(tin, (*applied)->undo);
+}
+
+/// A failure leaves what was run before it in the mesh.
+Replayed run_all(core::Tin& tin, std::span<const Rerun> wanted, const RunLimits& limits) {
+    std::vector<AppliedPtr> done;
+    done.reserve(wanted.size());
+    for (const Rerun& rerun : wanted) {
+        auto applied = run(tin, rerun.version, rerun.operation, limits);
+        if (!applied) return ReplayFailure{rerun.version, std::move(applied.errors())};
+        done.push_back(std::move(*applied));
+    }
+    return done;
+}
+
+}  // namespace
+
+Replayed replace_newest(core::Tin& tin, std::span<const AppliedPtr> taken,
+                        std::span<const Rerun> wanted, const RunLimits& limits) {
+    if (wanted.empty()) {
+        take_back_all(tin, taken);
+        return std::vector<AppliedPtr>{};
+    }
+    // One operation alone is whole or not at all by itself.
+    if (taken.empty() && wanted.size() == 1) return run_all(tin, wanted, limits);
+    core::Tin trial = tin;
+    take_back_all(trial, taken);
+    auto done = run_all(trial, wanted, limits);
+    if (std::holds_alternative<std::vector<AppliedPtr>>(done)) tin = std::move(trial);
+    return done;
+}
+
+}  // namespace tinsmith::server

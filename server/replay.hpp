@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "server/history.hpp"
+#include "server/operation.hpp"
+
+namespace tinsmith::server {
+
+/// The operation that could not be run on what is now before it, and why.
+struct ReplayFailure {
+    std::uint64_t version = 0;
+    core::Errors errors;
+};
+
+using Replayed = std::variant<std::vector<AppliedPtr>, ReplayFailure>;
+
+/// Takes the newest operations back and runs others in their place. A failure, or an exception,
+/// leaves the mesh as it was. Requires: `taken` are the newest on the mesh, oldest first.
+/// Cost: what was taken back and what is run; and a copy of the mesh where more than one of these
+/// might have to be made undone.
+Replayed replace_newest(core::Tin& tin, std::span<const AppliedPtr> taken,
+                        std::span<const Rerun> wanted, const RunLimits& limits);
+
+}  // namespace tinsmith::server
