@@ -76,13 +76,18 @@ Result<Cutout> cut_out(Tin tin, const Shape& shape, Winding winding, const Cutou
     const Shape outline = outline_of(shape);
     auto region = cut_in(tin, outline, winding, limits);
     if (!region) return std::move(region.errors());
-    double area = region->plan_area;
-    if (auto frame = frame_around(outline)) {
-        auto whole = cut_in(*frame, outline, winding, limits);
-        if (!whole) return std::move(whole.errors());
-        area = whole->plan_area;
-    }
-    return Cutout{std::move(tin), std::move(*region), area};
+    auto area = area_inside(outline, winding, limits);
+    if (!area) return std::move(area.errors());
+    return Cutout{std::move(tin), std::move(*region), *area};
+}
+
+Result<double> area_inside(const Shape& shape, Winding winding, const CutoutLimits& limits) {
+    const Shape outline = outline_of(shape);
+    auto frame = frame_around(outline);
+    if (!frame) return 0.0;
+    auto whole = cut_in(*frame, outline, winding, limits);
+    if (!whole) return std::move(whole.errors());
+    return whole->plan_area;
 }
 
 }  // namespace tinsmith::core

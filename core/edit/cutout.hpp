@@ -32,4 +32,8 @@ struct CutoutLimits {
 Result<Cutout> cut_out(Tin tin, const Shape& shape, Winding winding,
                        const CutoutLimits& limits = {});
 
+/// Plan area inside the shape's closed paths, by the same rules and with the same errors. Cost:
+/// that of integrating it into two triangles around it.
+Result<double> area_inside(const Shape& shape, Winding winding, const CutoutLimits& limits = {});
+
 }  // namespace tinsmith::core
