@@ -144,14 +144,15 @@ Sums sum_over(const Raster& raster, double level, Elevation elevation) {
     return sums;
 }
 
-void expect_agreement(const core::Volume& found, const Sums& sums, double share, const char* what) {
-    const double whole = sums.cut + sums.fill;
-    std::cout << what << ": cut off by " << (found.cut - sums.cut) / whole << ", fill by "
-              << (found.fill - sums.fill) / whole << ", area by " << found.area / sums.area - 1
-              << " of the whole\n";
-    EXPECT_NEAR(found.cut, sums.cut, share * whole) << what;
-    EXPECT_NEAR(found.fill, sums.fill, share * whole) << what;
-    EXPECT_NEAR(found.area, sums.area, share * sums.area) << what;
+/// `height`: by how much the surfaces may differ, on average over the area.
+void expect_agreement(const core::Volume& found, const Sums& sums, double height,
+                      const char* what) {
+    std::cout << what << ": cut off by " << found.cut - sums.cut << " of " << found.cut
+              << ", fill by " << found.fill - sums.fill << " of " << found.fill << ", area by "
+              << found.area - sums.area << " of " << found.area << "\n";
+    EXPECT_NEAR(found.cut, sums.cut, height * sums.area) << what;
+    EXPECT_NEAR(found.fill, sums.fill, height * sums.area) << what;
+    EXPECT_NEAR(found.area, sums.area, 1e-5 * sums.area) << what;
 }
 
 void compare(const core::Shape& shape, double level) {
@@ -160,18 +161,19 @@ void compare(const core::Shape& shape, double level) {
     const core::Volume found =
         core::volume_against(part->tin, part->region.triangles, core::level_plane(level));
     const Raster raster = raster_of(shape);
-    // A pixel is in or out as a whole: the border's thousands of pixels leave some parts in a
-    // million. Bilinear cells and pairs of triangles differ by what a cell is bent.
+    // A cell of 83 m is bent as GDAL sees it and two triangles as the mesh does: between its posts
+    // the two differ by centimetres on average. With the mesh's own elevations only the sampling is
+    // left: a pixel is in or out, above or below, as a whole.
     expect_agreement(
         found,
         sum_over(raster, level, [&](std::size_t i, core::Point2) { return raster.elevations[i]; }),
-        2e-3, "GDAL's elevations");
+        0.1, "GDAL's elevations");
     expect_agreement(found,
                      sum_over(raster, level,
                               [&](std::size_t, core::Point2 p) {
                                   return core::spot_at(terrain(), p)->elevation;
                               }),
-                     5e-5, "the mesh's elevations");
+                     3e-3, "the mesh's elevations");
 }
 
 TEST(VolumeAgainstGdal, OfTheLakeBelowALevel) {

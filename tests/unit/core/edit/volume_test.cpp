@@ -152,6 +152,36 @@ TEST(Volume, OnlyWhereBothSurfacesAre) {
     EXPECT_TRUE(cut(ring, box(10, 10, 11, 11)).region.triangles.empty());
 }
 
+TEST(Volume, AtMapCoordinates) {
+    const core::Point2 origin{500000.3, 5000000.7};
+    const core::Plane plane = core::sloping_plane(0.3, 125.0, {origin.x, origin.y, 400});
+    core::MeshData mesh = test::grid(7, 7, test::Diagonals::Alternate, 30.0, origin);
+    for (core::Point3& v : mesh.vertices)
+        v.z = plane.elevation(v.plan()) + 1.25;
+    const Tin tin = test::built(mesh);
+    const core::Point2 far{tin.bounds().max.x, tin.bounds().max.y};
+    const double area = (far.x - origin.x) * (far.y - origin.y);
+    const auto near = [](double found, double right) {
+        EXPECT_LE(std::fabs(found / right - 1), 1e-12) << found;
+    };
+    const Volume found = core::volume_against(tin, core::all_triangles(tin), plane);
+    near(found.area, area);
+    near(found.cut, 1.25 * area);
+    // Corners that the lines of the grid and its diagonals pass by.
+    const double x0 = origin.x + 17.37, x1 = origin.x + 151.91;
+    const double y0 = origin.y + 8.73, y1 = origin.y + 188.11;
+    const Volume part = against(tin, box(x0, y0, x1, y1), plane);
+    near(part.area, (x1 - x0) * (y1 - y0));
+    near(part.cut, 1.25 * (x1 - x0) * (y1 - y0));
+    core::MeshData other = test::grid(9, 9, test::Diagonals::Rising, 20.0, {x0, y0});
+    for (core::Point3& v : other.vertices)
+        v.z = plane.elevation(v.plan());
+    const Tin coarse = test::built(other);
+    const double common = (coarse.bounds().max.x - x0) * (coarse.bounds().max.y - y0);
+    near(between(tin, coarse).area, common);
+    near(between(tin, coarse).cut, 1.25 * common);
+}
+
 TEST(Volume, AddsUpOverASplitPolygon) {
     const Tin tin = test::built(test::grid(9, 9, test::Diagonals::Alternate));
     const core::Plane plane = core::sloping_plane(0.07, 33.0, {4, 4, 0.6});
