@@ -54,10 +54,13 @@ void append_point(std::string& out, const core::ProfilePoint& point) {
     out += "\"}";
 }
 
+/// However it was asked for: a level by its elevation, a plane by a point and what it rises.
 Json json_of(const core::Plane& plane) {
-    return {{"point", {plane.at.x, plane.at.y, plane.at.z}},
-            {"per_x", plane.per_x},
-            {"per_y", plane.per_y}};
+    if (plane.per_x == 0.0 && plane.per_y == 0.0) return {{"elevation", plane.at.z}};
+    return {{"plane",
+             {{"point", {plane.at.x, plane.at.y, plane.at.z}},
+              {"per_x", plane.per_x},
+              {"per_y", plane.per_y}}}};
 }
 
 }  // namespace
@@ -118,7 +121,7 @@ std::string write_volume(const VolumeView& view) {
     if (const auto* other = std::get_if<OtherSession>(&view.against)) {
         json["against"] = {{"session", other->id}, {"version", view.other_version}};
     } else {
-        json["against"] = {{"plane", json_of(std::get<core::Plane>(view.against))}};
+        json["against"] = json_of(std::get<core::Plane>(view.against));
     }
     const core::Volume& volume = view.volume;
     json["cut"] = volume.cut;

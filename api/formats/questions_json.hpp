@@ -23,7 +23,7 @@ using Against = std::variant<core::Plane, OtherSession>;
 
 /// A volume request as its body states it.
 struct VolumeRequest {
-    std::optional<RequestedShape> shape;  ///< a Polygon or MultiPolygon of the body's own
+    std::optional<RequestedShape> shape;  ///< a Polygon or MultiPolygon of the body's, even-odd
     std::string polygon_id;               ///< or one of the session's; both absent: the whole mesh
     Against against;
 };

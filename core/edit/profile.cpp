@@ -35,7 +35,7 @@ class ProfileWalk {
         for (std::size_t i = 1; i < line.size(); ++i) {
             if (line[i] == line[i - 1]) continue;
             here = walk(line[i - 1], line[i], here);
-            if (refused_) return *std::move(refused_);
+            if (!is_within_limits()) return *std::move(refused_);
         }
         return std::move(profile_);
     }
@@ -208,15 +208,17 @@ class ProfileWalk {
         add_input(at, q_);
     }
 
-    bool going() {
-        if (arrived_ || refused_) return false;
+    bool going() { return !arrived_ && is_within_limits(); }
+
+    bool is_within_limits() {
         constexpr std::uint64_t kStepsBetweenQuestions = 1024;
+        if (refused_) return false;
         if (profile_.crossings > limits_.max_crossings) {
             refused_ = Error{ErrorCode::CrossingBudget,
                              "the line crosses more than " + std::to_string(limits_.max_crossings) +
                                  " edges; ask for parts of it",
                              {}};
-        } else if (profile_.crossings % kStepsBetweenQuestions == 0 && limits_.cancelled &&
+        } else if (steps_++ % kStepsBetweenQuestions == 0 && limits_.cancelled &&
                    limits_.cancelled()) {
             refused_ = Error{ErrorCode::Cancelled, "the profile was stopped", {}};
         }
@@ -265,6 +267,7 @@ class ProfileWalk {
     Point2 p_, q_;
     double start_ = 0.0;   ///< distance of p
     double length_ = 0.0;  ///< of the segment
+    std::uint64_t steps_ = 0;
     std::optional<Location> arrived_;
     std::optional<BoundaryContact> left_by_;  ///< where the line went out of the mesh last
     std::optional<Error> refused_;

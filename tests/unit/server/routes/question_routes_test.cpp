@@ -130,6 +130,7 @@ TEST_F(Questions, VolumeAgainstALevelAndPlanes) {
     EXPECT_EQ(all["area"], 100.0);
     EXPECT_EQ(all["area_left_out"], 0.0);
     EXPECT_EQ(all["polygon"], nullptr);
+    EXPECT_EQ(all["against"], json({{"elevation", 0.0}}));
 
     const auto part = volume(R"({"polygon": {"type": "Polygon",
         "coordinates": [[[6,1],[8,1],[8,3],[6,3],[6,1]]]}, "against": {"elevation": 2}})");
@@ -139,6 +140,8 @@ TEST_F(Questions, VolumeAgainstALevelAndPlanes) {
         "coordinates": [[[6,1],[18,1],[18,3],[6,3],[6,1]]]},
         "against": {"plane": [[0,0,-1],[10,0,0],[0,10,0]]}})");
     EXPECT_NEAR(plane["cut"].get<double>(), 8.0, 1e-12);
+    EXPECT_EQ(plane["against"]["plane"]["point"], json({0.0, 0.0, -1.0}));
+    EXPECT_DOUBLE_EQ(plane["against"]["plane"]["per_x"].get<double>(), 0.1);
     EXPECT_NEAR(plane["area_left_out"].get<double>(), 16.0, 1e-12);
     const auto slope = volume(R"({"polygon": {"type": "Polygon",
         "coordinates": [[[6,1],[8,1],[8,3],[6,3],[6,1]]]},
