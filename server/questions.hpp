@@ -23,6 +23,9 @@ namespace tinsmith::server {
 /// Points of one profile at most, beside what `max_crossings` says: what an answer can carry.
 inline constexpr std::uint64_t kMaxProfileCrossings = 1'000'000;
 
+/// Points of one question for elevations: what may hold an edit up.
+inline constexpr std::size_t kMaxPoints = 100'000;
+
 /// The surface at positions, of one version.
 struct SpotsAnswer {
     std::vector<std::optional<core::Spot>> spots;

@@ -144,7 +144,9 @@ Response ask_elevations(Services& services, const Request& request,
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "points")) return *refusal;
-    auto points = api::read_points(request.body, services.read_limits());
+    api::ReadLimits limits = services.read_limits();
+    limits.max_polygon_vertices = std::min(limits.max_polygon_vertices, kMaxPoints);
+    auto points = api::read_points(request.body, limits);
     if (!points) return refuse_faults(request, points.kind(), std::move(points.faults()));
     const SpotsAnswer spots = spots_in(session, *points);
     return answer(session, spots.version,
