@@ -50,7 +50,7 @@ class ProfileWalk {
         profile_.length += length_;
         arrived_.reset();
         left_by_.reset();
-        depart(here);
+        go(depart(here));
         if (!arrived_ && !refused_) come_in_again(here.kind != Location::Kind::Outside);
         if (arrived_) return *arrived_;
         if (refused_) return {};
@@ -70,10 +70,8 @@ class ProfileWalk {
                 begin();
                 add_contact(way);
             }
-            if (way.is_vertex())
-                from_vertex(way.vertex);
-            else
-                enter(way.side);
+            go(way.is_vertex() ? Next{Next::Kind::FromVertex, {}, way.vertex}
+                               : Next{Next::Kind::Into, way.side});
             if (arrived_ || refused_) return;
         }
     }
@@ -84,20 +82,54 @@ class ProfileWalk {
                            p_) == Collinear;
     }
 
-    void depart(const Location& here) {
+    /// What the walk does next.
+    struct Next {
+        enum class Kind : std::uint8_t {
+            Nothing,     ///< it has arrived, or is out of the mesh
+            FromVertex,  ///< it is at the vertex
+            Into,  ///< into the side's triangle across the side, which runs from the left of the
+                   ///< line to its right
+            Over,  ///< out of the side's triangle across the side
+        };
+        Kind kind = Kind::Nothing;
+        Side side = {};
+        VertexId vertex = {};
+    };
+
+    /// Ends because every step is farther along the segment, or within the next triangle.
+    void go(Next next) {
+        while (next.kind != Next::Kind::Nothing && going()) {
+            switch (next.kind) {
+                case Next::Kind::Nothing:
+                    break;
+                case Next::Kind::FromVertex:
+                    next = from_vertex(next.vertex);
+                    break;
+                case Next::Kind::Into:
+                    next = enter(next.side);
+                    break;
+                case Next::Kind::Over:
+                    next = cross(next.side);
+                    break;
+            }
+        }
+    }
+
+    Next depart(const Location& here) {
         switch (here.kind) {
             case Location::Kind::Outside:
-                return;
+                break;
             case Location::Kind::OnVertex:
-                return from_vertex(here.vertex);
+                return {Next::Kind::FromVertex, {}, here.vertex};
             case Location::Kind::OnEdge:
                 return from_edge(here.side);
             case Location::Kind::InTriangle:
                 return from_inside(here.side.triangle());
         }
+        return {};
     }
 
-    void from_inside(TriangleId t) {
+    Next from_inside(TriangleId t) {
         for (unsigned i = 0; i < 3; ++i) {
             const Side side(t, i);
             const VertexId right = tin_.origin(side);
@@ -105,78 +137,62 @@ class ProfileWalk {
             if (of_right == Collinear && is_ahead(p_, q_, tin_.plan(right)))
                 return reach(right, side);
             if (of_right == Clockwise && turn(tin_.destination(side)) == CounterClockwise)
-                return leave_by(side);
+                return {Next::Kind::Over, side};
         }
+        return {};
     }
 
-    void from_edge(Side side) {
+    Next from_edge(Side side) {
         const Point2 a = tin_.plan(tin_.origin(side)), b = tin_.plan(tin_.destination(side));
-        switch (orientation(a, b, q_)) {
-            case CounterClockwise:
-                return enter(side);
-            case Clockwise:
-                if (const Side twin = tin_.twin(side); twin.valid()) return enter(twin);
-                return;  // out of the mesh at once
-            case Collinear:
-                return reach(is_ahead(p_, q_, b) ? tin_.destination(side) : tin_.origin(side),
-                             side);
-        }
+        const Orientation of_q = orientation(a, b, q_);
+        if (of_q == Collinear)
+            return reach(is_ahead(p_, q_, b) ? tin_.destination(side) : tin_.origin(side), side);
+        const Side entry = of_q == CounterClockwise ? side : tin_.twin(side);
+        if (!entry.valid()) return {};  // out of the mesh at once
+        return {Next::Kind::Into, entry};
     }
 
-    void from_vertex(VertexId v) {
-        while (going()) {
-            const Departure way = leave(tin_, v, q_, side_from(tin_, v));
-            if (way.kind == Departure::Kind::Outside) {
-                left_by_ = BoundaryContact{{}, v};
-                return;
-            }
-            touch(way.side.triangle());
-            if (way.kind == Departure::Kind::ThroughEdge) return leave_by(way.side);
-            const VertexId next = way.along(tin_, v);
-            if (arrives_before(next)) return arrive(locate_on(way.side));
-            add_vertex(next, way.side.triangle());
-            v = next;
+    Next from_vertex(VertexId v) {
+        const Departure way = leave(tin_, v, q_, side_from(tin_, v));
+        if (way.kind == Departure::Kind::Outside) {
+            left_by_ = BoundaryContact{{}, v};
+            return {};
         }
+        if (way.kind == Departure::Kind::AlongEdge) return reach(way.along(tin_, v), way.side);
+        touch(way.side.triangle());
+        return {Next::Kind::Over, way.side};
     }
 
     /// In the side's triangle, a vertex of which is straight ahead.
-    void reach(VertexId v, Side side) {
+    Next reach(VertexId v, Side side) {
         touch(side.triangle());
-        if (arrives_before(v)) return arrive(locate_in(side.triangle()));
-        add_vertex(v, side.triangle());
-        if (tin_.plan(v) != q_) from_vertex(v);
-    }
-
-    /// Into the side's triangle across the side, which runs from the left of the line to its right.
-    void enter(Side entry) {
-        while (going()) {
-            touch(entry.triangle());
-            const VertexId apex = tin_.apex(entry);
-            const Orientation of_apex = turn(apex);
-            if (of_apex == Collinear) return reach(apex, entry);
-            const auto beyond =
-                cross(of_apex == CounterClockwise ? entry.next() : entry.previous());
-            if (!beyond) return;
-            entry = *beyond;
+        if (arrives_before(v)) {
+            arrive(locate_in(side.triangle()));
+            return {};
         }
+        add_vertex(v, side.triangle());
+        return {Next::Kind::FromVertex, {}, v};
     }
 
-    void leave_by(Side exit) {
-        if (const auto entry = cross(exit)) enter(*entry);
+    Next enter(Side entry) {
+        touch(entry.triangle());
+        const VertexId apex = tin_.apex(entry);
+        const Orientation of_apex = turn(apex);
+        if (of_apex == Collinear) return reach(apex, entry);
+        return {Next::Kind::Over, of_apex == CounterClockwise ? entry.next() : entry.previous()};
     }
 
-    /// Over the side into the next triangle; nothing where q comes first or the mesh ends.
-    std::optional<Side> cross(Side exit) {
+    Next cross(Side exit) {
         const Point2 right = tin_.plan(tin_.origin(exit)), left = tin_.plan(tin_.destination(exit));
         if (orientation(right, left, q_) != Clockwise) {
             arrive(locate_in(exit.triangle()));
-            return std::nullopt;
+            return {};
         }
         const Side entry = tin_.twin(exit);
         add_crossing(exit, entry.valid() ? entry.triangle() : exit.triangle());
-        if (entry.valid()) return entry;
+        if (entry.valid()) return {Next::Kind::Into, entry};
         left_by_ = BoundaryContact{exit, {}};
-        return std::nullopt;
+        return {};
     }
 
     Orientation turn(VertexId v) const { return orientation(p_, q_, tin_.plan(v)); }

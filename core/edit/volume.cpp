@@ -57,7 +57,7 @@ class CutAndFill {
         while (!(d[0] > 0.0 && d[1] <= 0.0 && d[2] <= 0.0) &&
                !(d[0] < 0.0 && d[1] >= 0.0 && d[2] >= 0.0))
             std::rotate(d.begin(), d.begin() + 1, d.end());
-        const auto [a, b, c] = d;
+        const double a = d[0], b = d[1], c = d[2];
         const double to_s = a / (a - b), from_s = b / (b - a);
         const double to_t = a / (a - c), from_t = c / (c - a);
         const auto tip = [&](double part) {
@@ -79,7 +79,7 @@ class CutAndFill {
 /// A mesh's triangle, with its elevations above a base that is near both surfaces.
 struct Facet {
     Triangle2 plan;
-    std::array<double, 3> z;
+    std::array<double, 3> z{};
 
     /// Elevation at a position in the triangle, relative to `origin`: a convex combination of the
     /// corners', so that needles amplify nothing.
