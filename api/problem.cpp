@@ -41,6 +41,7 @@ constexpr std::array kTable{
     Row{NoSuchPath, "no-such-path", "Nothing is at this path", 404},
     Row{NoSuchSession, "no-such-session", "There is no such session", 404},
     Row{NoSuchPolygon, "no-such-polygon", "The session has no such polygon", 404},
+    Row{OutsideMesh, "outside-mesh", "The mesh has no surface there", 404},
     Row{MethodNotAllowed, "method-not-allowed", "The method is not allowed here", 405},
     Row{VersionMismatch, "version-mismatch", "The session has another version", 412},
     Row{EditRefused, "edit-refused", "The mesh cannot be edited this way", 422},

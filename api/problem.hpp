@@ -30,6 +30,7 @@ enum class ProblemType {
     NoSuchPath,
     NoSuchSession,
     NoSuchPolygon,
+    OutsideMesh,  ///< the mesh has no surface at the position asked about
     MethodNotAllowed,
     VersionMismatch,  ///< If-Match
     EditRefused,      ///< the core refused: the place and reason are in errors[]

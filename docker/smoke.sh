@@ -43,4 +43,10 @@ jq --exit-status '.version >= 1 and .triangles > 0' answer1 >/dev/null ||
 jq --exit-status '.totals.crossings > 0 and ([.polygons[].max_vertical_deviation] | max) < 1e-6' answer2 >/dev/null ||
     fail "the second line brought no report of an exact integration: $(head -c 500 answer2)"
 [[ $(head -c 4 hills.glb) == glTF ]] || fail "the third line brought no GLB"
+jq --exit-status '.elevation > 0' answer4 >/dev/null ||
+    fail "the fourth line brought no elevation: $(head -c 500 answer4)"
+jq --exit-status '[.stretches[].points[].at] | index("edge") != null' answer5 >/dev/null ||
+    fail "the fifth line brought no profile: $(head -c 500 answer5)"
+jq --exit-status '.area > 0 and .cut + .fill > 0' answer6 >/dev/null ||
+    fail "the sixth line brought no volume: $(head -c 500 answer6)"
 echo "smoke: $number lines of the README work; hills.glb has $(stat --format=%s hills.glb) bytes"

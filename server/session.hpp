@@ -67,6 +67,13 @@ class Session {
     /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
     /// it. Holds the readers' lock while their regions are found.
     DrapedCopy draped(std::optional<std::string_view> id = {}) const;
+    /// What `look` makes of the mesh, its polygons and its version, which are as they are now while
+    /// it runs: under the readers' lock, so it should be short, and let go of all three.
+    template <typename Look>
+    auto look(Look look) const {
+        const auto lock = lock_to_read();
+        return look(tin_, polygons_, version_);
+    }
     /// Integrates all shapes or none. A dry run works on a copy and holds no writer's lock.
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);

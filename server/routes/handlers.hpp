@@ -42,4 +42,10 @@ Response get_mesh(Services&, const Request&, const PathArguments&);
 Response get_mesh_glb(Services&, const Request&, const PathArguments&);
 Response get_mesh_json(Services&, const Request&, const PathArguments&);
 
+// question_routes.cpp: nothing changes
+Response get_elevation(Services&, const Request&, const PathArguments&);
+Response ask_elevations(Services&, const Request&, const PathArguments&);
+Response ask_profile(Services&, const Request&, const PathArguments&);
+Response ask_volume(Services&, const Request&, const PathArguments&);
+
 }  // namespace tinsmith::server

@@ -2,6 +2,7 @@
 #include "server/routes/route_table.hpp"
 
 #include <array>
+#include <string_view>
 
 #include "api/requests.hpp"
 #include "server/routes/handlers.hpp"
@@ -11,6 +12,7 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
+constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
 
@@ -56,6 +58,10 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/elevation", kPosition, to(get_elevation)},
+        {"POST", "/v1/sessions/{id}/elevation", {}, to(ask_elevations)},
+        {"POST", "/v1/sessions/{id}/profile", {}, to(ask_profile)},
+        {"POST", "/v1/sessions/{id}/volume", {}, to(ask_volume)},
     };
 }
 

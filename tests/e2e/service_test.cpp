@@ -313,6 +313,40 @@ TEST(ServiceStart, LoadsTheDemoTerrain) {
     EXPECT_EQ(server.stop(), "");
 }
 
+TEST_F(Service, AnswersQuestionsWhileEditsGoOn) {
+    const std::string session = make_session();
+    const Answer at = ask(port(), "GET", session + "/elevation?x=8&y=3");
+    ASSERT_EQ(at.status, 200) << at.body;
+    EXPECT_DOUBLE_EQ(json::parse(at.body)["elevation"].get<double>(), 1.1);
+    EXPECT_EQ(at.header("etag"), ask(port(), "GET", session).header("etag"));
+    expect_problem(ask(port(), "GET", session + "/elevation?x=-8&y=3"), 404);
+    expect_problem(ask(port(), "GET", session + "/elevation?x=8"), 400);
+    expect_problem(ask(port(), "POST", session + "/volume", {kJson}, "{}"), 422);
+
+    const std::string line = R"({"type": "LineString", "coordinates": [[1,2],[9,2.5]]})";
+    const std::string level = R"({"against": {"elevation": 0}})";
+    std::thread editor([&] {
+        for (int i = 1; i < 9; ++i) {
+            const std::string x = std::to_string(i);
+            EXPECT_EQ(
+                ask(port(), "POST", session + "/polygons", {kJson},
+                    R"({"type": "LineString", "coordinates": [[)" + x + ",1],[" + x + ".5,9]]}")
+                    .status,
+                200);
+        }
+    });
+    for (int i = 0; i < 20; ++i) {
+        const Answer volume = ask(port(), "POST", session + "/volume", {kJson}, level);
+        ASSERT_EQ(volume.status, 200) << volume.body;
+        EXPECT_NEAR(json::parse(volume.body)["cut"].get<double>(), 50.0 + 250.0 / 3.0, 1e-9);
+        const Answer profile = ask(port(), "POST", session + "/profile", {kJson}, line);
+        ASSERT_EQ(profile.status, 200) << profile.body;
+        const auto found = json::parse(profile.body);
+        EXPECT_NE(profile.header("etag").find("-" + found["version"].dump()), std::string::npos);
+    }
+    editor.join();
+}
+
 TEST(ServiceStart, WarnsBeyondThisMachine) {
     ServerUnderTest server({"--host", "0.0.0.0"});
     ASSERT_NE(server.port(), 0) << server.program().output();

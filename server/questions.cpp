@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/questions.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "core/edit/cutout.hpp"
+#include "core/regions/winding_number.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+/// The mesh at one version, and what of a polygon finds its region there.
+struct Ground {
+    core::Tin tin;
+    std::uint64_t version = 0;
+    std::optional<Polygon> polygon = {};
+};
+
+/// The triangles asked for, and the area asked for, on the mesh or not.
+struct Part {
+    core::Tin tin;
+    std::vector<core::TriangleId> triangles;
+    double area = 0.0;
+};
+using PartOutcome = std::variant<Part, core::Errors, PolygonFault>;
+
+bool is_around(const Polygon& polygon, core::Point2 p) {
+    std::vector<core::DirectedSegment> segments;
+    for (const core::Path& path : polygon.outline.paths) {
+        for (std::size_t i = 0; i < path.points.size(); ++i)
+            segments.push_back({path.points[i], path.points[(i + 1) % path.points.size()]});
+    }
+    if (segments.empty()) return false;
+    const int times = core::WindingNumber(segments).around(p);
+    return polygon.winding == core::Winding::EvenOdd ? times % 2 != 0 : times != 0;
+}
+
+Ground copy_ground(const Session& session, const std::string& polygon_id = {}) {
+    return session.look(
+        [&](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t version) {
+            Ground ground{tin, version};
+            for (const Polygon& polygon : polygons) {
+                if (!polygon_id.empty() && polygon.id == polygon_id) ground.polygon = polygon;
+            }
+            return ground;
+        });
+}
+
+PartOutcome whole_of(core::Tin tin) {
+    auto all = core::all_triangles(tin);
+    const double area = core::volume_against(tin, all, core::level_plane(0.0)).area;
+    return Part{std::move(tin), std::move(all), area};
+}
+
+PartOutcome inside_of_own(Ground ground, const core::CutoutLimits& limits) {
+    if (!ground.polygon) return PolygonFault::NotThere;
+    const Polygon& polygon = *ground.polygon;
+    if (polygon.outline.paths.empty()) return PolygonFault::NoInside;
+    const core::ShapeReport& report = polygon.own_report();
+    core::Region region =
+        core::find_region(ground.tin, core::ConstraintHistory(ground.tin),
+                          {polygon.outline, report.chains, report.outside}, polygon.winding);
+    auto area = core::area_inside(polygon.outline, polygon.winding, limits);
+    if (!area) return std::move(area.errors());
+    return Part{std::move(ground.tin), std::move(region.triangles), *area};
+}
+
+PartOutcome part_of(Ground ground, const api::VolumeRequest& request,
+                    const core::CutoutLimits& limits) {
+    if (!request.polygon_id.empty()) return inside_of_own(std::move(ground), limits);
+    if (!request.shape) return whole_of(std::move(ground.tin));
+    auto cutout =
+        core::cut_out(std::move(ground.tin), request.shape->shape, core::Winding::EvenOdd, limits);
+    if (!cutout) return std::move(cutout.errors());
+    return Part{std::move(cutout->tin), std::move(cutout->region.triangles), cutout->shape_area};
+}
+
+/// What rounding leaves of two equal areas counts as nothing.
+double left_out(double asked, double compared) {
+    constexpr double kRounding = 1e-10;
+    const double rest = asked - compared;
+    return rest > kRounding * asked ? rest : 0.0;
+}
+
+}  // namespace
+
+std::function<bool()> deadline(const Limits& limits, const std::atomic<bool>& stopping) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto most = std::chrono::duration<double>(limits.max_edit_seconds);
+    return [start, most, &stopping] {
+        return stopping.load(std::memory_order_relaxed) || Clock::now() - start > most;
+    };
+}
+
+SpotAnswer spot_in(const Session& session, core::Point2 p) {
+    return session.look(
+        [&](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t version) {
+            SpotAnswer answer{core::spot_at(tin, p), {}, version};
+            if (!answer.spot) return answer;
+            for (const Polygon& polygon : polygons) {
+                if (is_around(polygon, p)) answer.polygons.push_back(polygon.id);
+            }
+            return answer;
+        });
+}
+
+SpotsAnswer spots_in(const Session& session, std::span<const core::Point2> points) {
+    SpotsAnswer answer;
+    answer.spots.reserve(points.size());
+    answer.version =
+        session.look([&](const core::Tin& tin, const std::vector<Polygon>&, std::uint64_t version) {
+            for (const core::Point2& p : points)
+                answer.spots.push_back(core::spot_at(tin, p));
+            return version;
+        });
+    return answer;
+}
+
+ProfileOutcome profile_in(const Session& session, std::span<const core::Point2> line,
+                          const core::ProfileLimits& limits) {
+    return session.look([&](const core::Tin& tin, const std::vector<Polygon>&,
+                            std::uint64_t version) -> ProfileOutcome {
+        auto profile = core::profile_along(tin, line, limits);
+        if (!profile) return std::move(profile.errors());
+        return ProfileAnswer{std::move(*profile), version};
+    });
+}
+
+VolumeOutcome volume_in(const Session& session, const api::VolumeRequest& request,
+                        const Session* other, const Limits& limits,
+                        const std::atomic<bool>& stopping) {
+    const auto cancelled = deadline(limits, stopping);
+    Ground ground = copy_ground(session, request.polygon_id);
+    VolumeAnswer answer;
+    answer.version = ground.version;
+    auto found = part_of(std::move(ground), request,
+                         {limits.max_crossings, limits.max_triangles, cancelled});
+    if (auto* errors = std::get_if<core::Errors>(&found)) return std::move(*errors);
+    if (const auto* fault = std::get_if<PolygonFault>(&found)) return *fault;
+    const Part& part = std::get<Part>(found);
+    if (const auto* plane = std::get_if<core::Plane>(&request.against)) {
+        answer.volume = core::volume_against(part.tin, part.triangles, *plane);
+    } else {
+        const Ground theirs = copy_ground(*other);
+        answer.other_version = theirs.version;
+        auto volume = core::volume_between(part.tin, part.triangles, theirs.tin, cancelled);
+        if (!volume) return std::move(volume.errors());
+        answer.volume = *volume;
+    }
+    answer.area_left_out = left_out(part.area, answer.volume.area);
+    return answer;
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "api/answers.hpp"
+#include "api/formats/json_reader_values.hpp"
+#include "api/media_type.hpp"
+#include "server/polygon_reading.hpp"
+#include "server/questions.hpp"
+#include "server/reply.hpp"
+#include "server/routes/handlers.hpp"
+#include "server/routes/route_support.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+api::AnswerHead head_of(const Session& session, std::uint64_t version) {
+    return {session.facts().id, version, session.facts().unit};
+}
+
+Response answer(const Session& session, std::uint64_t version, std::string body) {
+    return ok(kJson, std::move(body)).with("ETag", session.etag(version));
+}
+
+std::optional<Response> refusal_of_type(const Request& request, std::string_view what) {
+    const std::string type = api::media_type_of(request.header("content-type").value_or(""));
+    if (type == "application/json" || type == "application/geo+json") return std::nullopt;
+    return refuse_media_type(request, type, what, "application/json, application/geo+json",
+                             "-H 'Content-Type: application/json'");
+}
+
+Response refuse_faults(const Request& request, api::FaultKind kind, api::Faults faults) {
+    return refuse(request, api::problem_of_faults(kind, std::move(faults)));
+}
+
+/// A coordinate from the query, or a fault.
+double read_coordinate(const Request& request, const std::string& name, api::Faults& faults) {
+    const auto text = request.parameter(name);
+    double value = 0.0;
+    if (text) {
+        const char* end = text->data() + text->size();
+        const auto [stop, error] = std::from_chars(text->data(), end, value);
+        if (error == std::errc() && stop == end && api::json::acceptable_coordinate(value))
+            return value;
+    }
+    api::Fault fault{text ? "INVALID_OPTION" : "OPTION_MISSING",
+                     name + (text ? " cannot be \"" + std::string(*text) + "\"" : " is missing") +
+                         ": give a coordinate in the session's system, such as " + name +
+                         "=736500.5.",
+                     {}};
+    fault.parameter = name;
+    faults.push_back(std::move(fault));
+    return 0.0;
+}
+
+/// What the core refused, told at places of the body.
+Response refuse_errors(const Request& request, const core::Errors& errors,
+                       const std::vector<api::RequestedShape>& shapes) {
+    auto faults = faults_of(errors, shapes);
+    api::Problem problem = api::problem_of_errors(errors, std::move(faults));
+    if (problem.type == api::ProblemType::Stopped) {
+        problem.detail =
+            "The question took longer than this server allows, or the server is stopping. Ask "
+            "for smaller parts, or try again.";
+    }
+    return refuse(request, problem);
+}
+
+/// The other session of a volume request, null where it names none.
+Step<std::shared_ptr<Session>> require_other(Services& services, const Request& request,
+                                             const Session& session,
+                                             const api::VolumeRequest& asked) {
+    const auto* named = std::get_if<api::OtherSession>(&asked.against);
+    if (named == nullptr) return std::shared_ptr<Session>();
+    auto other = services.sessions.find(named->id);
+    const std::string pointer = "/against/session";
+    if (!other) {
+        std::string detail = "No session has the id \"" + named->id.substr(0, 64) +
+                             "\". GET /v1/sessions lists them.";
+        return refuse(request, api::Problem{api::ProblemType::NoSuchSession,
+                                            detail,
+                                            {{"NO_SUCH_SESSION", detail, pointer}}});
+    }
+    const SessionFacts &ours = session.facts(), &theirs = other->facts();
+    const bool same_crs = ours.crs.empty() || theirs.crs.empty() || ours.crs == theirs.crs;
+    if (same_crs && ours.unit == theirs.unit) return other;
+    return refuse_faults(request, api::FaultKind::Invalid,
+                         {{"CRS_MISMATCH",
+                           "The other session is in " +
+                               (theirs.crs.empty() ? std::string("no named system") : theirs.crs) +
+                               " and " + theirs.unit + ", this one in " +
+                               (ours.crs.empty() ? std::string("no named system") : ours.crs) +
+                               " and " + ours.unit + ": compare surfaces of one system.",
+                           pointer}});
+}
+
+Response refuse_polygon(const Request& request, const std::string& id, PolygonFault fault) {
+    if (fault == PolygonFault::NotThere) {
+        std::string detail = "No polygon of this session has the id \"" + id.substr(0, 64) +
+                             "\". GET /v1/sessions/{id}/polygons lists them.";
+        return refuse(request, api::Problem{api::ProblemType::NoSuchPolygon,
+                                            detail,
+                                            {{"NO_SUCH_POLYGON", detail, "/polygon"}}});
+    }
+    return refuse_faults(request, api::FaultKind::Invalid,
+                         {{"NO_INSIDE",
+                           "\"" + id.substr(0, 64) +
+                               "\" is a line or a point and has no inside: "
+                               "name a polygon.",
+                           "/polygon"}});
+}
+
+}  // namespace
+
+Response get_elevation(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    api::Faults faults;
+    const double x = read_coordinate(request, "x", faults);
+    const double y = read_coordinate(request, "y", faults);
+    if (!faults.empty()) {
+        return refuse_faults(request, api::FaultKind::Parameter, std::move(faults));
+    }
+    const SpotAnswer found_spot = spot_in(session, {x, y});
+    if (!found_spot.spot) {
+        return refuse(request, api::ProblemType::OutsideMesh,
+                      "The position is outside the mesh, or in a hole of it. Its bounds are in GET "
+                      "/v1/sessions/" +
+                          session.facts().id + ".")
+            .with("ETag", session.etag(found_spot.version));
+    }
+    return answer(session, found_spot.version,
+                  api::write_elevation(head_of(session, found_spot.version), {x, y},
+                                       *found_spot.spot, found_spot.polygons));
+}
+
+Response ask_elevations(Services& services, const Request& request,
+                        const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    if (auto refusal = refusal_of_type(request, "points")) return *refusal;
+    api::ReadLimits limits = services.read_limits();
+    limits.max_polygon_vertices = std::min(limits.max_polygon_vertices, kMaxPoints);
+    auto points = api::read_points(request.body, limits);
+    if (!points) return refuse_faults(request, points.kind(), std::move(points.faults()));
+    const SpotsAnswer spots = spots_in(session, *points);
+    return answer(session, spots.version,
+                  api::write_elevations(head_of(session, spots.version), spots.spots));
+}
+
+Response ask_profile(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    if (auto refusal = refusal_of_type(request, "a line")) return *refusal;
+    auto line = api::read_line(request.body, services.read_limits());
+    if (!line) return refuse_faults(request, line.kind(), std::move(line.faults()));
+    PolygonWork claim;
+    claim.crs = line->crs;
+    claim.crs_pointer = "/crs";
+    if (const auto fault = crs_fault(claim, session.facts().crs)) {
+        return refuse_faults(request, api::FaultKind::Invalid, {*fault});
+    }
+    const auto outcome = profile_in(session, line->shapes.front().shape.paths.front().points,
+                                    {std::min(services.limits.max_crossings, kMaxProfileCrossings),
+                                     deadline(services.limits, services.stopping)});
+    if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
+        return refuse_errors(request, *errors, line->shapes);
+    }
+    const auto& [profile, version] = std::get<ProfileAnswer>(outcome);
+    return answer(session, version, api::write_profile(head_of(session, version), profile));
+}
+
+Response ask_volume(Services& services, const Request& request, const PathArguments& arguments) {
+    const auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    if (auto refusal = refusal_of_type(request, "a question")) return *refusal;
+    if (auto refusal = refusal_of_memory(services, request)) return *refusal;
+    auto asked = api::read_volume_request(request.body, services.read_limits());
+    if (!asked) return refuse_faults(request, asked.kind(), std::move(asked.faults()));
+    const auto other = require_other(services, request, session, *asked);
+    if (const auto* refusal = std::get_if<Response>(&other)) return *refusal;
+    const auto outcome =
+        volume_in(session, *asked, std::get<0>(other).get(), services.limits, services.stopping);
+    if (const auto* fault = std::get_if<PolygonFault>(&outcome)) {
+        return refuse_polygon(request, asked->polygon_id, *fault);
+    }
+    if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
+        std::vector<api::RequestedShape> shapes;
+        if (asked->shape) shapes.push_back(*std::move(asked->shape));
+        return refuse_errors(request, *errors, shapes);
+    }
+    const VolumeAnswer& volume = std::get<VolumeAnswer>(outcome);
+    return answer(
+        session, volume.version,
+        api::write_volume({head_of(session, volume.version), volume.volume, volume.area_left_out,
+                           asked->polygon_id, asked->against, volume.other_version}));
+}
+
+}  // namespace tinsmith::server
