@@ -31,8 +31,10 @@ using Handled = httplib::Server::HandlerResponse;
 /// twice was forged.
 constexpr std::array kLibraryHeaders{"remote_addr", "remote_port", "local_addr", "local_port"};
 
-/// The one answer that may not tell a length (RFC 9110 8.6); the library tells one.
+/// The answers that may not tell a length, or not that of their empty body (RFC 9110 8.6); the
+/// library tells one.
 constexpr int kNoContent = 204;
+constexpr int kNotModified = 304;
 
 /// How long a refused connection stays open after the answer. Closing with unread bytes makes the
 /// kernel reset the connection, and the client could lose the answer before it has read it.
@@ -225,7 +227,8 @@ class HttpServer::Impl {
         server_.set_post_routing_handler([](const httplib::Request&, httplib::Response& out) {
             if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
             out.headers.erase("Accept-Ranges");
-            if (out.body.empty() && out.status == kNoContent) out.headers.erase("Content-Length");
+            const bool is_silent = out.status == kNoContent || out.status == kNotModified;
+            if (out.body.empty() && is_silent) out.headers.erase("Content-Length");
         });
     }
 

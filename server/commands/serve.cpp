@@ -73,7 +73,7 @@ bool serve_until_stopped(HttpServer& server, Services& services, const StopSigna
 int run_serve(const ServeConfig& config) {
     const StopSignals signals;  // before the first thread, which inherits the mask
     set_log_level(config.log_level);
-    Services services(config.http.limits);
+    Services services(config.http.limits, config.policy);
     const Router router(make_routes(services));
     HttpServer server(config.http,
                       [&router](const Request& request) { return router.handle(request); });

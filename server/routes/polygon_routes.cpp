@@ -44,11 +44,24 @@ Response send_mesh_after(const Request& request, const Session& session,
     return glb_response(request, *result.mesh, options, dry_run ? std::string() : made);
 }
 
+/// GeoJSON and JSON differ in their type alone, and so have tags of their own.
+std::string_view suffix_of(std::size_t type) {
+    return type == 0 ? "-geojson" : "-json";
+}
+
 Response send_features(const Session& session, const DrapedCopy& copy, std::size_t type,
                        std::string body) {
     return ok(std::string(kFeatureTypes[type]), std::move(body))
-        .with("ETag", etag_of(session, copy.version, "-geojson"))
+        .with("ETag", etag_of(session, copy.version, suffix_of(type)))
         .with("Vary", "Accept");
+}
+
+/// 304 and the like, before anything is written.
+std::optional<Response> answer_early(const Request& request, const Session& session,
+                                     std::size_t type) {
+    auto answer = answer_to_conditions(request, session, session.view().version, suffix_of(type));
+    if (answer) answer->with("Vary", "Accept");
+    return answer;
 }
 
 }  // namespace
@@ -78,6 +91,9 @@ Response integrate_polygons(Services& services, const Request& request,
     work->edit.expected_version = std::get<0>(expected);
     set_budgets(work->edit, services.limits, services.stopping);
     const bool dry_run = work->edit.dry_run;
+    if (!dry_run) {
+        if (auto refusal = refusal_of_blind_edit(services, request, session)) return *refusal;
+    }
     auto outcome = session.integrate(std::move(work->edit));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, session, mismatch->current);
@@ -101,6 +117,7 @@ Response list_polygons(Services& services, const Request& request, const PathArg
     const auto type = require_media_type(request, kFeatureTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     const Session& session = *std::get<0>(found);
+    if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
     const DrapedCopy copy = session.draped();
     return send_features(session, copy, std::get<0>(type),
                          api::write_feature_collection(copy.polygons, session.facts().crs));
@@ -118,6 +135,7 @@ Response get_polygon(Services& services, const Request& request, const PathArgum
                       "No polygon of this session has the id \"" + arguments[1].substr(0, 64) +
                           "\". GET /v1/sessions/" + session.facts().id + "/polygons lists them.");
     }
+    if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
     return send_features(session, copy, std::get<0>(type),
                          api::write_feature(copy.polygons.front(), session.facts().crs));
 }

@@ -6,36 +6,23 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "api/fault.hpp"
 #include "api/formats/gltf.hpp"
 #include "api/requests.hpp"
 #include "server/http_message.hpp"
+#include "server/routes/preconditions.hpp"
+#include "server/routes/step.hpp"
 #include "server/services.hpp"
 
 namespace tinsmith::server {
-
-/// A value on the way through a handler, or the answer that ends it.
-template <typename T>
-using Step = std::variant<T, Response>;
 
 /// The session that the path names first, or 404.
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id);
 
 Response no_such_session(const Request& request, const std::string& id);
-
-/// The version that If-Match asks for; nothing where there is no If-Match or it is "*". Of several
-/// the one that is current counts. 412 where it names none of this session's life.
-Step<std::optional<std::uint64_t>> require_if_match(const Request& request, const Session& session);
-
-/// 412, with the current version as ETag.
-Response version_mismatch(const Request& request, const Session& session, std::uint64_t current);
-
-/// The ETag of one representation: the session's, with a suffix inside the quotes.
-std::string etag_of(const Session& session, std::uint64_t version, std::string_view suffix);
 
 /// Which of the offers the Accept header prefers, or 406 naming all of them.
 Step<std::size_t> require_media_type(const Request& request,
@@ -52,6 +39,9 @@ std::vector<api::NamedOption> options_of_query(const Request& request);
 /// is told with a refusal: what has been done all the same.
 Response glb_response(const Request& request, const core::MeshData& mesh,
                       const api::GltfOptions& options, const std::string& note = {});
+
+/// The shortest text that reads back to the same number.
+std::string text_of(double value);
 
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request);

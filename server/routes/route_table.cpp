@@ -3,6 +3,7 @@
 
 #include "api/requests.hpp"
 #include "server/routes/handlers.hpp"
+#include "server/routes/idempotency.hpp"
 
 namespace tinsmith::server {
 
@@ -18,6 +19,11 @@ std::vector<Route> make_routes(Services& services) {
             return function(services, request, arguments);
         };
     };
+    // For every POST that changes something: a retry with the same Idempotency-Key is not done
+    // again.
+    const auto change = [&services, to](Function function) {
+        return keyed(services, to(function));
+    };
     const auto mesh = api::mesh_option_names();
     const auto polygons = api::polygon_option_names();
     return {
@@ -25,12 +31,12 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/healthz", {}, to(get_health)},
         {"GET", "/v1/limits", {}, to(get_limits)},
         {"GET", "/v1/sessions", {}, to(list_sessions)},
-        {"POST", "/v1/sessions", {}, to(create_session)},
+        {"POST", "/v1/sessions", {}, change(create_session)},
         {"GET", "/v1/sessions/{id}", {}, to(get_session)},
         {"PUT", "/v1/sessions/{id}", {}, to(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
-        {"POST", "/v1/sessions/{id}/fork", {}, to(fork_session)},
-        {"POST", "/v1/sessions/{id}/polygons", polygons, to(integrate_polygons)},
+        {"POST", "/v1/sessions/{id}/fork", {}, change(fork_session)},
+        {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/polygons", {}, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},

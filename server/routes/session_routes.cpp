@@ -101,6 +101,7 @@ Response get_session(Services& services, const Request& request, const PathArgum
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
     const api::SessionView view = session.view();
+    if (auto answer = answer_to_conditions(request, session, view.version, {})) return *answer;
     Response response = ok(kJson, api::write_session(view));
     response.with("ETag", session.etag(view.version));
     return response;
@@ -125,6 +126,7 @@ Response delete_session(Services& services, const Request& request,
     auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     auto& session = std::get<0>(found);
+    if (auto refusal = refusal_of_blind_edit(services, request, *session)) return *refusal;
     const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
     switch (services.sessions.remove(*session, std::get<0>(expected))) {
@@ -135,6 +137,7 @@ Response delete_session(Services& services, const Request& request,
         case Removal::Done:
             break;
     }
+    services.forget(*session);
     session.reset();
     // The allocator keeps what large meshes leave behind, a gigabyte easily, and gives it back to
     // the system only when told to.
