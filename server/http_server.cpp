@@ -14,6 +14,7 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
+#include "server/entity_tag.hpp"
 #include "server/guard.hpp"
 #include "server/log.hpp"
 #include "server/random_id.hpp"
@@ -55,6 +56,14 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// The sender's trace with a span of our own; nothing where there is none, or none valid. Repeated
+/// headers are not valid together.
+std::optional<TraceContext> trace_of(const Request& request) {
+    auto trace = parse_traceparent(combined_field(request, "traceparent").value_or(""));
+    if (trace) trace->parent_id = random_hex(trace->parent_id.size() / 2);
+    return trace;
+}
+
 /// Our request without its query and body. `ok` is false where the target or a header is broken;
 /// the request can still be answered by then.
 struct Head {
@@ -79,6 +88,7 @@ Head head_of(const httplib::Request& raw) {
     }
     const auto wished_id = request.header("x-request-id");
     request.id = wished_id && is_sane_id(*wished_id) ? std::string(*wished_id) : random_hex(8);
+    request.trace = trace_of(request);
     request.path = raw.target.substr(0, raw.target.find_first_of("?#"));
     if (request.path.size() > kMaxPathBytes) return head;  // the guard says so
     auto target = parse_target(raw.target);
@@ -136,8 +146,8 @@ void write_response(const httplib::Request& raw, httplib::Response& out, Respons
 
 class HttpServer::Impl {
   public:
-    Impl(HttpOptions options, Answer answer)
-        : options_(std::move(options)), answer_(std::move(answer)) {
+    Impl(HttpOptions options, Answer answer, Finish finish)
+        : options_(std::move(options)), answer_(std::move(answer)), finish_(std::move(finish)) {
         configure();
         install_handlers();
     }
@@ -216,7 +226,7 @@ class HttpServer::Impl {
         server_.Post("/", with_body);
         server_.Put("/", with_body);
         server_.Patch("/", with_body);
-        server_.set_error_handler([](const httplib::Request& raw, httplib::Response& out) {
+        server_.set_error_handler([this](const httplib::Request& raw, httplib::Response& out) {
             if (!out.has_header("X-Request-Id")) answer_for_library(raw, out);
         });
         server_.set_exception_handler(
@@ -304,15 +314,16 @@ class HttpServer::Impl {
         return request;
     }
 
-    static void finish(const httplib::Request& raw, httplib::Response& out, const Request& request,
-                       Response&& response, Clock::time_point start) {
+    void finish(const httplib::Request& raw, httplib::Response& out, const Request& request,
+                Response&& response, Clock::time_point start) const {
+        finish_(request, response);
         log_request(request, response, milliseconds_since(start));
         write_response(raw, out, std::move(response));
     }
 
     /// For what the library refused by itself: unreadable request lines, headers that are too
     /// long, failures inside it.
-    static void answer_for_library(const httplib::Request& raw, httplib::Response& out) {
+    void answer_for_library(const httplib::Request& raw, httplib::Response& out) const {
         Request request;
         request.id = random_hex(8);
         request.method = raw.method.empty() ? "-" : raw.method;
@@ -334,14 +345,15 @@ class HttpServer::Impl {
 
     const HttpOptions options_;
     const Answer answer_;
+    const Finish finish_;
     int listener_ = -1;
     std::atomic<bool> stopped_{false};
     std::atomic<bool> finished_{false};
     httplib::Server server_;
 };
 
-HttpServer::HttpServer(HttpOptions options, Answer answer)
-    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer))) {}
+HttpServer::HttpServer(HttpOptions options, Answer answer, Finish finish)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer), std::move(finish))) {}
 
 HttpServer::~HttpServer() = default;
 
