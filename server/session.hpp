@@ -38,6 +38,7 @@ struct MeshCopy {
 struct DrapedCopy {
     std::vector<api::DrapedPolygon> polygons;
     std::uint64_t version = 0;
+    bool more = false;  ///< others follow these
 };
 
 /// One terrain in memory: its mesh, its version and its polygons.
@@ -61,6 +62,8 @@ class Session {
     /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
     /// it. Holds the readers' lock while their regions are found.
     DrapedCopy draped(std::optional<std::string_view> id = {}) const;
+    /// The same for at most `limit` polygons, those that came after p`number`.
+    DrapedCopy draped_after(std::uint64_t number, std::size_t limit) const;
     /// Integrates all shapes or none. A dry run works on a copy and holds no writer's lock.
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);

@@ -7,6 +7,7 @@
 
 #include "api/crs.hpp"
 #include "api/responses.hpp"
+#include "server/answer_finish.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
@@ -36,6 +37,17 @@ std::string suffix_of(const api::GltfOptions& options) {
     return suffix;
 }
 
+/// Null where the library fails; then it goes out as it is.
+MeshCache::Found coded_copy(const Request& request, const EncodedMesh& mesh) {
+    auto copy = std::make_shared<EncodedMesh>(mesh);
+    return encode_as_gzip(request, copy->response) ? copy : nullptr;
+}
+
+Response tell(const Session& session, const EncodedMesh& mesh, const std::string& suffix) {
+    Response response = mesh.response;
+    return response.with("ETag", etag_of(session, mesh.version, suffix));
+}
+
 /// One representation of the mesh: conditions first, then what is kept, then `write`, which makes
 /// an answer of a copy of the mesh. What `write` refuses goes out and is not kept.
 template <typename Write>
@@ -59,8 +71,13 @@ Response send(Services& services, const Session& session, const Request& request
     // Of a session that was removed meanwhile nothing may stay behind.
     if (!services.sessions.is_kept(session)) services.meshes.forget(birth);
     if (!found) return *std::move(refusal);
-    Response response = found->response;
-    return response.with("ETag", etag_of(session, found->version, suffix));
+    if (wants_gzip(request, found->response)) {
+        const std::string coded = suffix + std::string(kGzipSuffix);
+        const auto mesh = services.meshes.get({birth, found->version, coded},
+                                              [&] { return coded_copy(request, *found); });
+        if (mesh) return tell(session, *mesh, coded);
+    }
+    return tell(session, *found, suffix);
 }
 
 Response send_glb(Services& services, const Session& session, const Request& request) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <charconv>
 #include <utility>
 
 #include "api/crs.hpp"
@@ -9,12 +10,14 @@
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
+#include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
+constexpr std::string_view kCursorKind = "polygon";
 constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kGlb};
 constexpr std::array<std::string_view, 2> kFeatureTypes{kGeoJson, kJson};
 
@@ -23,6 +26,13 @@ std::optional<Response> refusal_of_type(const Request& request) {
     if (type == "application/json" || type == "application/geo+json") return std::nullopt;
     return refuse_media_type(request, type, "polygons", "application/geo+json, application/json",
                              "-H 'Content-Type: application/json'");
+}
+
+/// 7 of "p7"; 0, which no polygon has, where it is none.
+std::uint64_t number_in(std::string_view id) {
+    std::uint64_t number = 0;
+    if (id.starts_with('p')) std::from_chars(id.data() + 1, id.data() + id.size(), number);
+    return number;
 }
 
 Response send_report(const Session& session, const PolygonResult& result, bool dry_run) {
@@ -116,11 +126,18 @@ Response list_polygons(Services& services, const Request& request, const PathArg
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const auto type = require_media_type(request, kFeatureTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+    const auto page = require_page(request, kCursorKind);
+    if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
     const Session& session = *std::get<0>(found);
     if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
-    const DrapedCopy copy = session.draped();
-    return send_features(session, copy, std::get<0>(type),
-                         api::write_feature_collection(copy.polygons, session.facts().crs));
+    const auto& [limit, after] = std::get<0>(page);
+    const DrapedCopy copy = session.draped_after(number_in(after), limit);
+    Response response =
+        send_features(session, copy, std::get<0>(type),
+                      api::write_feature_collection(copy.polygons, session.facts().crs));
+    if (copy.more)
+        response.with("Link", next_link(request, kCursorKind, limit, copy.polygons.back().id));
+    return response;
 }
 
 Response get_polygon(Services& services, const Request& request, const PathArguments& arguments) {

@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/route_table.hpp"
 
+#include <array>
+#include <utility>
+
 #include "api/requests.hpp"
+#include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/idempotency.hpp"
+#include "server/routes/paging.hpp"
+#include "server/routes/route_support.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
+
+/// A handler that answers in JSON whatever is asked: 406 where that is not acceptable.
+Handler as_json(Handler handler) {
+    return [handler = std::move(handler)](const Request& request, const PathArguments& arguments) {
+        static constexpr std::array<std::string_view, 1> kOffer{kJson};
+        const auto type = require_media_type(request, kOffer);
+        if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+        return handler(request, arguments);
+    };
+}
 
 }  // namespace
 
@@ -24,20 +40,21 @@ std::vector<Route> make_routes(Services& services) {
     const auto change = [&services, to](Function function) {
         return keyed(services, to(function));
     };
+    const auto json = [to](Function function) { return as_json(to(function)); };
     const auto mesh = api::mesh_option_names();
     const auto polygons = api::polygon_option_names();
     return {
         {"GET", "/", {}, to(get_welcome)},
         {"GET", "/healthz", {}, to(get_health)},
-        {"GET", "/v1/limits", {}, to(get_limits)},
-        {"GET", "/v1/sessions", {}, to(list_sessions)},
-        {"POST", "/v1/sessions", {}, change(create_session)},
-        {"GET", "/v1/sessions/{id}", {}, to(get_session)},
-        {"PUT", "/v1/sessions/{id}", {}, to(put_session)},
+        {"GET", "/v1/limits", {}, json(get_limits)},
+        {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
+        {"POST", "/v1/sessions", {}, as_json(change(create_session))},
+        {"GET", "/v1/sessions/{id}", {}, json(get_session)},
+        {"PUT", "/v1/sessions/{id}", {}, json(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
-        {"POST", "/v1/sessions/{id}/fork", {}, change(fork_session)},
+        {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
         {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},
-        {"GET", "/v1/sessions/{id}/polygons", {}, to(list_polygons)},
+        {"GET", "/v1/sessions/{id}/polygons", kPageParameters, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"GET", "/v1/sessions/{id}/mesh", mesh, to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},

@@ -10,6 +10,7 @@
 #include "server/random_id.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
+#include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
 #include "server/terrain_reading.hpp"
 
@@ -17,6 +18,7 @@ namespace tinsmith::server {
 
 namespace {
 
+constexpr std::string_view kCursorKind = "session";
 constexpr std::string_view kTerrainTypes =
     "application/json (mesh or grid), image/tiff (GeoTIFF elevations)";
 
@@ -71,11 +73,21 @@ Response make_session(Services& services, const Request& request, std::optional<
 
 }  // namespace
 
-Response list_sessions(Services& services, const Request&, const PathArguments&) {
+Response list_sessions(Services& services, const Request& request, const PathArguments&) {
+    const auto page = require_page(request, kCursorKind);
+    if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
+    const auto& [limit, after] = std::get<0>(page);
     std::vector<api::SessionView> views;
-    for (const auto& session : services.sessions.all())
+    bool more = false;
+    for (const auto& session : services.sessions.all()) {
+        if (session->facts().id <= after) continue;
+        more = views.size() == limit;
+        if (more) break;
         views.push_back(session->view());
-    return ok(kJson, api::write_session_list(views));
+    }
+    Response response = ok(kJson, api::write_session_list(views));
+    if (more) response.with("Link", next_link(request, kCursorKind, limit, views.back().id));
+    return response;
 }
 
 Response create_session(Services& services, const Request& request, const PathArguments&) {
