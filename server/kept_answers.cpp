@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/kept_answers.hpp"
 
+#include <iterator>
+#include <new>
+#include <utility>
+
 namespace tinsmith::server {
 
 namespace {
@@ -16,17 +20,41 @@ std::size_t bytes_of(const KeptAnswers::Name& name, const Response& answer) {
     return bytes + answer.body.size();
 }
 
+/// What was done must not look undone for want of memory.
+bool copy_if_possible(const Response& answer, Response& copy) {
+    try {
+        copy = answer;
+        return true;
+    } catch (const std::bad_alloc&) {
+        copy = {};
+        return false;
+    }
+}
+
+/// Puts the name last in both orders, or throws and leaves them. The second one.
+template <typename Order, typename ByScope>
+auto& append(Order& order, ByScope& of_scope, const KeptAnswers::Name& name) {
+    order.push_back(name);
+    try {
+        const auto [of, is_new] = of_scope.try_emplace(name.first, 1, name);
+        if (!is_new) of->second.push_back(name);
+        return of->second;
+    } catch (...) {
+        order.pop_back();
+        throw;
+    }
+}
+
 }  // namespace
 
 KeptAnswers::Verdict KeptAnswers::begin(const Name& name, const std::string& print) {
     const std::lock_guard lock(mutex_);
     make_room();
-    const auto [place, is_new] = entries_.try_emplace(name);
-    Entry& entry = place->second;
-    if (is_new) {
-        entry.print = print;
-        return GoOn{};
-    }
+    Entry fresh;
+    fresh.print = print;
+    const auto [place, is_new] = entries_.try_emplace(name, std::move(fresh));
+    if (is_new) return GoOn{};
+    const Entry& entry = place->second;
     if (entry.print != print) return OtherRequest{};
     if (entry.running) return StillRunning{};
     if (!entry.whole) return NoBody{};
@@ -39,12 +67,11 @@ void KeptAnswers::keep(const Name& name, const Response& answer) {
     if (place == entries_.end()) return;
     Entry& entry = place->second;
     entry.whole = bytes_of(name, answer) <= bounds_.bytes / kShare;
-    if (entry.whole) entry.answer = answer;
+    if (entry.whole) entry.whole = copy_if_possible(answer, entry.answer);
     entry.bytes = bytes_of(name, entry.answer);
     entry.since = clock_();
-    entry.place = order_.insert(order_.end(), name);
-    auto& siblings = of_scope_[name.first];
-    siblings.push_back(name);
+    auto& siblings = append(order_, of_scope_, name);
+    entry.place = std::prev(order_.end());
     entry.running = false;
     bytes_ += entry.bytes;
     if (siblings.size() > bounds_.per_scope) erase(entries_.find(siblings.front()));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/mesh_cache.hpp"
 
+#include <iterator>
+#include <new>
 #include <utility>
 
 namespace tinsmith::server {
@@ -63,7 +65,12 @@ void MeshCache::finish(const MeshKey& key, const Found& mesh) {
     work->second->mesh = mesh;
     under_way_.erase(work);
     finished_.notify_all();
-    if (mesh) keep({key.birth, mesh->version, key.representation}, mesh);
+    if (!mesh) return;
+    try {
+        keep({key.birth, mesh->version, key.representation}, mesh);
+    } catch (const std::bad_alloc&) {
+        // Not kept, then; it can be sent all the same.
+    }
 }
 
 /// Requires: the lock.
@@ -73,7 +80,12 @@ void MeshCache::keep(MeshKey key, const Found& mesh) {
     while (counts_.bytes + bytes > budget_)
         drop(std::prev(entries_.end()));
     entries_.push_front({key, mesh, bytes});
-    by_key_.emplace(std::move(key), entries_.begin());
+    try {
+        by_key_.emplace(std::move(key), entries_.begin());
+    } catch (...) {
+        entries_.pop_front();
+        throw;
+    }
     counts_.bytes += bytes;
 }
 
