@@ -2,7 +2,6 @@
 #include "server/session.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <new>
 #include <utility>
 
@@ -19,23 +18,6 @@ std::vector<std::string> polygon_ids(std::uint64_t first, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
         ids.push_back("p" + std::to_string(first + i));
     return ids;
-}
-
-/// 7 of "p7".
-std::uint64_t number_of(const Polygon& polygon) {
-    std::uint64_t number = 0;
-    std::from_chars(polygon.id.data() + 1, polygon.id.data() + polygon.id.size(), number);
-    return number;
-}
-
-std::vector<api::DrapedPolygon> drape_all(const core::Tin& tin,
-                                          const std::vector<const Polygon*>& wanted) {
-    std::vector<api::DrapedPolygon> draped;
-    if (wanted.empty()) return draped;
-    const core::ConstraintHistory history(tin);
-    for (const Polygon* polygon : wanted)
-        draped.push_back(drape(tin, history, *polygon));
-    return draped;
 }
 
 /// The caller's budget, tightened to what the session may still grow by.
@@ -126,24 +108,16 @@ MeshCopy Session::copy_mesh() const {
 
 DrapedCopy Session::draped(std::optional<std::string_view> id) const {
     const auto lock = lock_to_read();
+    DrapedCopy copy{{}, version_};
     std::vector<const Polygon*> wanted;
     for (const Polygon& polygon : polygons_) {
         if (!id || polygon.id == *id) wanted.push_back(&polygon);
     }
-    return {drape_all(tin_, wanted), version_, false};
-}
-
-DrapedCopy Session::draped_after(std::uint64_t number, std::size_t limit) const {
-    const auto lock = lock_to_read();
-    std::vector<const Polygon*> wanted;
-    bool more = false;
-    for (const Polygon& polygon : polygons_) {
-        if (number_of(polygon) <= number) continue;
-        more = wanted.size() == limit;
-        if (more) break;
-        wanted.push_back(&polygon);
-    }
-    return {drape_all(tin_, wanted), version_, more};
+    if (wanted.empty()) return copy;
+    const core::ConstraintHistory history(tin_);
+    for (const Polygon* polygon : wanted)
+        copy.polygons.push_back(drape(tin_, history, *polygon));
+    return copy;
 }
 
 // A shared mutex alone lets a stream of readers keep a writer out for ever.
