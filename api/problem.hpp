@@ -32,10 +32,14 @@ enum class ProblemType {
     NoSuchPolygon,
     OutsideMesh,  ///< the mesh has no surface at the position asked about
     MethodNotAllowed,
-    VersionMismatch,  ///< If-Match
-    EditRefused,      ///< the core refused: the place and reason are in errors[]
-    BudgetExceeded,   ///< the work would pass a limit; errors[] names it
-    IdTaken,          ///< the id of choice exists
+    VersionMismatch,       ///< If-Match
+    PreconditionRequired,  ///< no If-Match where the operator wants one
+    KeyReused,             ///< Idempotency-Key: another request had it
+    KeyInUse,              ///< Idempotency-Key: its request is still running
+    AnswerNotKept,         ///< Idempotency-Key: done before, but its answer was too large to keep
+    EditRefused,           ///< the core refused: the place and reason are in errors[]
+    BudgetExceeded,        ///< the work would pass a limit; errors[] names it
+    IdTaken,               ///< the id of choice exists
     NothingToUndo,
     NothingToRedo,
     PolygonSettled,  ///< its operation is no longer kept: it is part of the base

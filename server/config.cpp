@@ -94,6 +94,41 @@ void add_limits(CLI::App& app, Limits& limits) {
     add("max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
         ->check(digit_first())
         ->check(CLI::PositiveNumber);
+    add("mesh_cache", limits.mesh_cache, "Bytes of encoded meshes to keep; 0: none")
+        ->transform(bytes)
+        ->transform(digit_first());
+    add("kept_answers", limits.kept_answers, "Bytes of answers to keep for retries by key")
+        ->transform(bytes)
+        ->transform(digit_first());
+}
+
+/// "https://maps.example:8443": what browsers send as Origin, to the letter.
+CLI::Validator origin() {
+    return {[](std::string& text) {
+                const std::size_t slashes = text.find("://");
+                const std::string host =
+                    slashes == std::string::npos ? "" : text.substr(slashes + 3);
+                const bool is_plain = std::none_of(text.begin(), text.end(), [](char c) {
+                    return c <= ' ' || c > '~' || c == '"' || c == '\\' || (c >= 'A' && c <= 'Z');
+                });
+                const bool is_origin =
+                    slashes > 0 && !host.empty() && host.find_first_of("/?#@*,") == host.npos;
+                return text == "*" || (is_plain && is_origin)
+                           ? std::string()
+                           : "\"" + text + "\" is no origin such as https://maps.example, nor *";
+            },
+            "", "origin"};
+}
+
+void add_policy(CLI::App& app, Policy& policy) {
+    app.add_flag("--require-if-match", policy.require_if_match,
+                 "Refuse edits that do not name their version by If-Match")
+        ->envname("TINSMITH_REQUIRE_IF_MATCH");
+    app.add_option("--cors-origin", policy.cors_origins,
+                   "Origin whose pages may call, repeatable; *: any")
+        ->envname("TINSMITH_CORS_ORIGIN")
+        ->delimiter(',')
+        ->check(origin());
 }
 
 CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
@@ -110,6 +145,7 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     add_setting(*serve, "threads", http.threads, "Connections served at the same time")
         ->check(CLI::Range(2, 1024));
     add_limits(*serve, http.limits);
+    add_policy(*serve, config.policy);
     static const std::map<std::string, LogLevel> kLevels{{"debug", LogLevel::Debug},
                                                          {"info", LogLevel::Info},
                                                          {"warning", LogLevel::Warning},

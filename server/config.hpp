@@ -8,6 +8,7 @@
 #include "api/requests.hpp"
 #include "server/http_server.hpp"
 #include "server/log.hpp"
+#include "server/policy.hpp"
 
 namespace tinsmith::server {
 
@@ -17,6 +18,7 @@ struct ServeConfig {
     std::string port_file;  ///< empty: none
     bool demo = false;
     std::string demo_terrain;  ///< empty: the bundled one
+    Policy policy;
     LogLevel log_level = LogLevel::Info;
 };
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/trace_context.hpp"
+
 namespace tinsmith::server {
 
 using NameValue = std::pair<std::string, std::string>;
@@ -21,7 +23,8 @@ struct Request {
     std::vector<NameValue> headers;
     std::string body;
     std::string remote_address;
-    std::string id;  ///< the request id that every answer carries
+    std::string id;                       ///< the request id that every answer carries
+    std::optional<TraceContext> trace{};  ///< the sender's, with a span of our own as parent
 
     /// The first header of that lower-case name.
     std::optional<std::string_view> header(std::string_view name) const {

@@ -14,6 +14,7 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
+#include "server/entity_tag.hpp"
 #include "server/guard.hpp"
 #include "server/log.hpp"
 #include "server/random_id.hpp"
@@ -31,8 +32,10 @@ using Handled = httplib::Server::HandlerResponse;
 /// twice was forged.
 constexpr std::array kLibraryHeaders{"remote_addr", "remote_port", "local_addr", "local_port"};
 
-/// The one answer that may not tell a length (RFC 9110 8.6); the library tells one.
+/// The answers that may not tell a length, or not that of their empty body (RFC 9110 8.6); the
+/// library tells one.
 constexpr int kNoContent = 204;
+constexpr int kNotModified = 304;
 
 /// How long a refused connection stays open after the answer. Closing with unread bytes makes the
 /// kernel reset the connection, and the client could lose the answer before it has read it.
@@ -51,6 +54,14 @@ bool is_library_header(const std::string& name) {
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// The sender's trace with a span of our own; nothing where there is none, or none valid. Repeated
+/// headers are not valid together.
+std::optional<TraceContext> trace_of(const Request& request) {
+    auto trace = parse_traceparent(combined_field(request, "traceparent").value_or(""));
+    if (trace) trace->parent_id = random_hex(trace->parent_id.size() / 2);
+    return trace;
 }
 
 /// Our request without its query and body. `ok` is false where the target or a header is broken;
@@ -77,6 +88,7 @@ Head head_of(const httplib::Request& raw) {
     }
     const auto wished_id = request.header("x-request-id");
     request.id = wished_id && is_sane_id(*wished_id) ? std::string(*wished_id) : random_hex(8);
+    request.trace = trace_of(request);
     request.path = raw.target.substr(0, raw.target.find_first_of("?#"));
     if (request.path.size() > kMaxPathBytes) return head;  // the guard says so
     auto target = parse_target(raw.target);
@@ -134,8 +146,8 @@ void write_response(const httplib::Request& raw, httplib::Response& out, Respons
 
 class HttpServer::Impl {
   public:
-    Impl(HttpOptions options, Answer answer)
-        : options_(std::move(options)), answer_(std::move(answer)) {
+    Impl(HttpOptions options, Answer answer, Finish finish)
+        : options_(std::move(options)), answer_(std::move(answer)), finish_(std::move(finish)) {
         configure();
         install_handlers();
     }
@@ -214,7 +226,7 @@ class HttpServer::Impl {
         server_.Post("/", with_body);
         server_.Put("/", with_body);
         server_.Patch("/", with_body);
-        server_.set_error_handler([](const httplib::Request& raw, httplib::Response& out) {
+        server_.set_error_handler([this](const httplib::Request& raw, httplib::Response& out) {
             if (!out.has_header("X-Request-Id")) answer_for_library(raw, out);
         });
         server_.set_exception_handler(
@@ -225,7 +237,8 @@ class HttpServer::Impl {
         server_.set_post_routing_handler([](const httplib::Request&, httplib::Response& out) {
             if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
             out.headers.erase("Accept-Ranges");
-            if (out.body.empty() && out.status == kNoContent) out.headers.erase("Content-Length");
+            const bool is_silent = out.status == kNoContent || out.status == kNotModified;
+            if (out.body.empty() && is_silent) out.headers.erase("Content-Length");
         });
     }
 
@@ -301,15 +314,16 @@ class HttpServer::Impl {
         return request;
     }
 
-    static void finish(const httplib::Request& raw, httplib::Response& out, const Request& request,
-                       Response&& response, Clock::time_point start) {
+    void finish(const httplib::Request& raw, httplib::Response& out, const Request& request,
+                Response&& response, Clock::time_point start) const {
+        finish_(request, response);
         log_request(request, response, milliseconds_since(start));
         write_response(raw, out, std::move(response));
     }
 
     /// For what the library refused by itself: unreadable request lines, headers that are too
     /// long, failures inside it.
-    static void answer_for_library(const httplib::Request& raw, httplib::Response& out) {
+    void answer_for_library(const httplib::Request& raw, httplib::Response& out) const {
         Request request;
         request.id = random_hex(8);
         request.method = raw.method.empty() ? "-" : raw.method;
@@ -331,14 +345,15 @@ class HttpServer::Impl {
 
     const HttpOptions options_;
     const Answer answer_;
+    const Finish finish_;
     int listener_ = -1;
     std::atomic<bool> stopped_{false};
     std::atomic<bool> finished_{false};
     httplib::Server server_;
 };
 
-HttpServer::HttpServer(HttpOptions options, Answer answer)
-    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer))) {}
+HttpServer::HttpServer(HttpOptions options, Answer answer, Finish finish)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer), std::move(finish))) {}
 
 HttpServer::~HttpServer() = default;
 

@@ -32,8 +32,10 @@ struct HttpOptions {
 class HttpServer {
   public:
     using Answer = std::function<Response(const Request&)>;
+    using Finish = std::function<void(const Request&, Response&)>;
 
-    HttpServer(HttpOptions options, Answer answer);
+    /// `finish` has the last word on every answer, those that no handler gave included.
+    HttpServer(HttpOptions options, Answer answer, Finish finish);
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;

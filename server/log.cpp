@@ -58,9 +58,13 @@ void log_error(std::string_view text) {
 
 void log_request(const Request& request, const Response& response, double milliseconds) {
     const auto level = response.status >= 500 ? spdlog::level::err : spdlog::level::info;
-    logger().log(level, "{} \"{}\" status={} bytes={} ms={:.2f} request={} client={}",
+    const std::string trace =
+        request.trace ? " trace=" + request.trace->trace_id + " span=" + request.trace->parent_id
+                      : std::string();
+    logger().log(level, "{} \"{}\" status={} bytes={} ms={:.2f} request={} client={}{}",
                  sanitized(request.method), sanitized(request.path), response.status,
-                 response.body.size(), milliseconds, request.id, sanitized(request.remote_address));
+                 response.body.size(), milliseconds, request.id, sanitized(request.remote_address),
+                 trace);
 }
 
 std::string sanitized(std::string_view text) {

@@ -17,7 +17,8 @@ void log_info(std::string_view text);
 void log_warning(std::string_view text);
 void log_error(std::string_view text);
 
-/// One line: method, path, status, bytes sent, milliseconds, request id, client.
+/// One line: method, path, status, bytes sent, milliseconds, request id, client, and the
+/// trace where the request belongs to one.
 void log_request(const Request& request, const Response& response, double milliseconds);
 
 /// Printable ASCII as it is, the rest as \xNN; cut after 200 bytes.

@@ -13,11 +13,19 @@ namespace tinsmith::server {
 
 namespace {
 
+/// A polygon of a session, copied out: what outlives the lock.
+struct Outline {
+    core::Shape shape;
+    core::Winding winding = core::Winding::EvenOdd;
+    std::vector<core::Chain> chains;
+    std::vector<core::OutsidePart> outside;
+};
+
 /// The mesh at one version, and what of a polygon finds its region there.
 struct Ground {
     core::Tin tin;
     std::uint64_t version = 0;
-    std::optional<Polygon> polygon = {};
+    std::optional<Outline> polygon = {};
 };
 
 /// The triangles asked for, and the area asked for, on the mesh or not.
@@ -30,24 +38,28 @@ using PartOutcome = std::variant<Part, core::Errors, PolygonFault>;
 
 bool is_around(const Polygon& polygon, core::Point2 p) {
     std::vector<core::DirectedSegment> segments;
-    for (const core::Path& path : polygon.outline.paths) {
+    for (const core::Path& path : polygon.outline().paths) {
+        if (!path.closed) continue;
         for (std::size_t i = 0; i < path.points.size(); ++i)
             segments.push_back({path.points[i], path.points[(i + 1) % path.points.size()]});
     }
     if (segments.empty()) return false;
     const int times = core::WindingNumber(segments).around(p);
-    return polygon.winding == core::Winding::EvenOdd ? times % 2 != 0 : times != 0;
+    return polygon.request.winding == core::Winding::EvenOdd ? times % 2 != 0 : times != 0;
 }
 
 Ground copy_ground(const Session& session, const std::string& polygon_id = {}) {
-    return session.look(
-        [&](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t version) {
-            Ground ground{tin, version};
-            for (const Polygon& polygon : polygons) {
-                if (!polygon_id.empty() && polygon.id == polygon_id) ground.polygon = polygon;
-            }
-            return ground;
-        });
+    return session.look([&](const core::Tin& tin, const std::vector<Polygon>& polygons,
+                            std::uint64_t version) {
+        Ground ground{tin, version};
+        for (const Polygon& polygon : polygons) {
+            if (polygon_id.empty() || polygon.id() != polygon_id) continue;
+            const core::ShapeReport& report = polygon.own_report();
+            ground.polygon =
+                Outline{polygon.outline(), polygon.request.winding, report.chains, report.outside};
+        }
+        return ground;
+    });
 }
 
 PartOutcome whole_of(core::Tin tin) {
@@ -58,13 +70,13 @@ PartOutcome whole_of(core::Tin tin) {
 
 PartOutcome inside_of_own(Ground ground, const core::CutoutLimits& limits) {
     if (!ground.polygon) return PolygonFault::NotThere;
-    const Polygon& polygon = *ground.polygon;
-    if (polygon.outline.paths.empty()) return PolygonFault::NoInside;
-    const core::ShapeReport& report = polygon.own_report();
+    const Outline& polygon = *ground.polygon;
+    if (std::ranges::none_of(polygon.shape.paths, &core::Path::closed))
+        return PolygonFault::NoInside;
     core::Region region =
         core::find_region(ground.tin, core::ConstraintHistory(ground.tin),
-                          {polygon.outline, report.chains, report.outside}, polygon.winding);
-    auto area = core::area_inside(polygon.outline, polygon.winding, limits);
+                          {polygon.shape, polygon.chains, polygon.outside}, polygon.winding);
+    auto area = core::area_inside(polygon.shape, polygon.winding, limits);
     if (!area) return std::move(area.errors());
     return Part{std::move(ground.tin), std::move(region.triangles), *area};
 }
@@ -103,7 +115,7 @@ SpotAnswer spot_in(const Session& session, core::Point2 p) {
             SpotAnswer answer{core::spot_at(tin, p), {}, version};
             if (!answer.spot) return answer;
             for (const Polygon& polygon : polygons) {
-                if (is_around(polygon, p)) answer.polygons.push_back(polygon.id);
+                if (is_around(polygon, p)) answer.polygons.push_back(polygon.id());
             }
             return answer;
         });

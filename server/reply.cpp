@@ -19,6 +19,12 @@ Response no_content() {
     return {204, {}, {}, {}, false};
 }
 
+Response not_modified(std::string etag) {
+    Response response{304, {}, {}, {}, false};
+    response.with("ETag", std::move(etag));
+    return response;
+}
+
 Response refuse(const Request& request, const api::Problem& problem) {
     return {api::problem_status(problem.type),
             std::string(api::kProblemMediaType),

@@ -2,16 +2,25 @@
 #pragma once
 
 #include <atomic>
+#include <utility>
 
 #include "api/formats/read_limits.hpp"
+#include "server/kept_answers.hpp"
 #include "server/limits.hpp"
+#include "server/mesh_cache.hpp"
+#include "server/policy.hpp"
 #include "server/session_store.hpp"
 
 namespace tinsmith::server {
 
 /// What the handlers of one process share.
 struct Services {
-    explicit Services(const Limits& the_limits) : limits(the_limits), sessions(the_limits) {}
+    explicit Services(const Limits& the_limits, Policy the_policy = {})
+        : limits(the_limits),
+          policy(std::move(the_policy)),
+          sessions(the_limits),
+          meshes(the_limits.mesh_cache),
+          answers({.bytes = the_limits.kept_answers}) {}
 
     api::ReadLimits read_limits() const {
         api::ReadLimits read;
@@ -20,8 +29,17 @@ struct Services {
         return read;
     }
 
+    /// Drops what is kept beside a session that has been removed.
+    void forget(const Session& session) {
+        meshes.forget(session.facts().birth);
+        answers.forget(session.facts().birth);
+    }
+
     const Limits limits;
+    const Policy policy;
     SessionStore sessions;
+    MeshCache meshes;                   ///< encoded
+    KeptAnswers answers;                ///< for retries by key
     std::atomic<bool> stopping{false};  ///< edits under way give up when it turns true
 };
 

@@ -41,6 +41,7 @@ struct MeshCopy {
 struct DrapedCopy {
     std::vector<api::DrapedPolygon> polygons;
     std::uint64_t version = 0;
+    bool more = false;  ///< others follow these
 };
 
 /// One terrain in memory: its mesh, its version and its polygons.
@@ -72,8 +73,10 @@ class Session {
     template <typename Look>
     auto look(Look look) const {
         const auto lock = lock_to_read();
-        return look(tin_, polygons_, version_);
+        return look(tin_, history_.polygons(), version());
     }
+    /// The same for at most `limit` polygons, those that came after p`number`.
+    DrapedCopy draped_after(std::uint64_t number, std::size_t limit) const;
     /// Integrates all shapes or none. A dry run works on a copy and holds no writer's lock.
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);

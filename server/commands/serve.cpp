@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "server/answer_finish.hpp"
 #include "server/commands/commands.hpp"
 #include "server/demo.hpp"
 #include "server/file_io.hpp"
@@ -73,10 +74,13 @@ bool serve_until_stopped(HttpServer& server, Services& services, const StopSigna
 int run_serve(const ServeConfig& config) {
     const StopSignals signals;  // before the first thread, which inherits the mask
     set_log_level(config.log_level);
-    Services services(config.http.limits);
+    Services services(config.http.limits, config.policy);
     const Router router(make_routes(services));
-    HttpServer server(config.http,
-                      [&router](const Request& request) { return router.handle(request); });
+    HttpServer server(
+        config.http, [&router](const Request& request) { return router.handle(request); },
+        [&services](const Request& request, Response& response) {
+            finish_answer(services.policy, request, response);
+        });
     std::string error;
     const int port = server.bind(error);
     if (port == 0) return fail(error);

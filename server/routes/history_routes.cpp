@@ -34,6 +34,7 @@ Step<Asked> require_change(Services& services, const Request& request, const std
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     const auto expected = require_if_match(request, *asked.session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
+    if (auto refusal = refusal_of_blind_edit(services, request, *asked.session)) return *refusal;
     asked.change.expected_version = std::get<0>(expected);
     asked.change.want_delta = std::get<0>(type) == 1;
     asked.change.limits = rerun_limits(services.limits, services.stopping);

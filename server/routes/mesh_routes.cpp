@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "api/crs.hpp"
 #include "api/responses.hpp"
+#include "server/answer_finish.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
@@ -13,38 +17,96 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 2> kMeshTypes{kGlb, kJson};
+constexpr int kDone = 200;
 
-Response send_glb(const Session& session, const Request& request) {
+/// Every option in the tag and in the key; none: what is sent unless told otherwise.
+std::string suffix_of(const api::GltfOptions& options) {
+    // Names all members: one that is added has to be told apart here too. The unit is the
+    // session's.
+    const auto& [compression, tolerance, up, constraints, normals, unit] = options;
+    const api::GltfOptions usual;
+    if (compression == usual.compression && tolerance == usual.tolerance && up == usual.up &&
+        constraints == usual.constraints && normals == usual.normals) {
+        return "-glb";
+    }
+    std::string suffix = compression == api::Compression::Draco ? "-glb-draco-" : "-glb-none-";
+    suffix += text_of(tolerance);
+    suffix += up == api::UpAxis::Y ? "-y" : "-z";
+    if (constraints) suffix += "-constraints";
+    if (normals) suffix += "-normals";
+    return suffix;
+}
+
+/// Null where the library fails; then it goes out as it is.
+MeshCache::Found coded_copy(const Request& request, const EncodedMesh& mesh) {
+    auto copy = std::make_shared<EncodedMesh>(mesh);
+    return encode_as_gzip(request, copy->response) ? copy : nullptr;
+}
+
+Response tell(const Session& session, const EncodedMesh& mesh, const std::string& suffix) {
+    Response response = mesh.response;
+    return response.with("ETag", etag_of(session, mesh.version, suffix));
+}
+
+/// One representation of the mesh: conditions first, then what is kept, then `write`, which makes
+/// an answer of a copy of the mesh. What `write` refuses goes out and is not kept.
+template <typename Write>
+Response send(Services& services, const Session& session, const Request& request,
+              const std::string& suffix, const Write& write) {
+    const std::uint64_t version = session.view().version;
+    if (auto answer = answer_to_conditions(request, session, version, suffix)) return *answer;
+    std::optional<Response> refusal;
+    const std::string& birth = session.facts().birth;
+    const auto encode = [&]() -> MeshCache::Found {
+        const MeshCopy copy = session.copy_mesh();
+        Response response = write(copy.mesh);
+        if (response.status == kDone) {
+            return std::make_shared<const EncodedMesh>(
+                EncodedMesh{copy.version, std::move(response)});
+        }
+        refusal = std::move(response);
+        return nullptr;
+    };
+    const auto found = services.meshes.get({birth, version, suffix}, encode);
+    // Of a session that was removed meanwhile nothing may stay behind.
+    if (!services.sessions.is_kept(session)) services.meshes.forget(birth);
+    if (!found) return *std::move(refusal);
+    if (wants_gzip(request, found->response)) {
+        const std::string coded = suffix + std::string(kGzipSuffix);
+        const auto mesh = services.meshes.get({birth, found->version, coded},
+                                              [&] { return coded_copy(request, *found); });
+        if (mesh) return tell(session, *mesh, coded);
+    }
+    return tell(session, *found, suffix);
+}
+
+Response send_glb(Services& services, const Session& session, const Request& request) {
     auto options = api::parse_mesh_options(options_of_query(request));
     if (!options) {
         return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
     }
     options->unit_to_metre = api::metres_per(session.facts().unit);
-    const MeshCopy copy = session.copy_mesh();
-    Response response = glb_response(request, copy.mesh, *options);
-    if (response.status == 200) response.with("ETag", etag_of(session, copy.version, "-glb"));
-    return response;
+    return send(services, session, request, suffix_of(*options),
+                [&](const core::MeshData& mesh) { return glb_response(request, mesh, *options); });
 }
 
-Response send_json(const Session& session, const Request& request) {
+Response send_json(Services& services, const Session& session, const Request& request) {
     if (!request.query.empty()) {
         return refuse(request, api::ProblemType::InvalidParameter,
                       "The JSON mesh has no options: full doubles, z up. Leave \"" +
                           request.query.front().first + "\" out, or ask for model/gltf-binary.");
     }
-    const MeshCopy copy = session.copy_mesh();
-    Response response = ok(kJson, api::write_mesh_json(copy.mesh));
-    response.with("ETag", etag_of(session, copy.version, "-json"));
-    return response;
+    return send(services, session, request, "-json",
+                [](const core::MeshData& mesh) { return ok(kJson, api::write_mesh_json(mesh)); });
 }
 
-using Sender = Response (*)(const Session&, const Request&);
+using Sender = Response (*)(Services&, const Session&, const Request&);
 
 Response send_mesh(Services& services, const Request& request, const std::string& id,
                    Sender sender) {
     const auto session = require_session(services, request, id);
     if (const auto* refusal = std::get_if<Response>(&session)) return *refusal;
-    return sender(*std::get<0>(session), request);
+    return sender(services, *std::get<0>(session), request);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <charconv>
 #include <utility>
 
 #include "api/crs.hpp"
@@ -9,12 +10,14 @@
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
+#include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
+constexpr std::string_view kCursorKind = "polygon";
 constexpr std::array<std::string_view, 3> kAnswerTypes{kJson, kGlb, kDelta};
 constexpr std::array<std::string_view, 2> kFeatureTypes{kGeoJson, kJson};
 
@@ -23,6 +26,13 @@ std::optional<Response> refusal_of_type(const Request& request) {
     if (type == "application/json" || type == "application/geo+json") return std::nullopt;
     return refuse_media_type(request, type, "polygons", "application/geo+json, application/json",
                              "-H 'Content-Type: application/json'");
+}
+
+/// 7 of "p7"; 0, which no polygon has, where it is none.
+std::uint64_t number_in(std::string_view id) {
+    std::uint64_t number = 0;
+    if (id.starts_with('p')) std::from_chars(id.data() + 1, id.data() + id.size(), number);
+    return number;
 }
 
 Response send_report(const Session& session, const PolygonResult& result, bool dry_run) {
@@ -44,11 +54,24 @@ Response send_mesh_after(const Request& request, const Session& session,
     return glb_response(request, *result.mesh, options, dry_run ? std::string() : made);
 }
 
+/// GeoJSON and JSON differ in their type alone, and so have tags of their own.
+std::string_view suffix_of(std::size_t type) {
+    return type == 0 ? "-geojson" : "-json";
+}
+
 Response send_features(const Session& session, const DrapedCopy& copy, std::size_t type,
                        std::string body) {
     return ok(std::string(kFeatureTypes[type]), std::move(body))
-        .with("ETag", etag_of(session, copy.version, "-geojson"))
+        .with("ETag", etag_of(session, copy.version, suffix_of(type)))
         .with("Vary", "Accept");
+}
+
+/// 304 and the like, before anything is written.
+std::optional<Response> answer_early(const Request& request, const Session& session,
+                                     std::size_t type) {
+    auto answer = answer_to_conditions(request, session, session.view().version, suffix_of(type));
+    if (answer) answer->with("Vary", "Accept");
+    return answer;
 }
 
 }  // namespace
@@ -85,6 +108,9 @@ Response integrate_polygons(Services& services, const Request& request,
                       "A dry run makes no version that a delta could lead to: leave dry_run out, "
                       "or ask for application/json or model/gltf-binary.");
     }
+    if (!dry_run) {
+        if (auto refusal = refusal_of_blind_edit(services, request, session)) return *refusal;
+    }
     auto outcome = session.integrate(std::move(work->edit));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, session, mismatch->current);
@@ -109,10 +135,18 @@ Response list_polygons(Services& services, const Request& request, const PathArg
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const auto type = require_media_type(request, kFeatureTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+    const auto page = require_page(request, kCursorKind);
+    if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
     const Session& session = *std::get<0>(found);
-    const DrapedCopy copy = session.draped();
-    return send_features(session, copy, std::get<0>(type),
-                         api::write_feature_collection(copy.polygons, session.facts().crs));
+    if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
+    const auto& [limit, after] = std::get<0>(page);
+    const DrapedCopy copy = session.draped_after(number_in(after), limit);
+    Response response =
+        send_features(session, copy, std::get<0>(type),
+                      api::write_feature_collection(copy.polygons, session.facts().crs));
+    if (copy.more)
+        response.with("Link", next_link(request, kCursorKind, limit, copy.polygons.back().id));
+    return response;
 }
 
 Response get_polygon(Services& services, const Request& request, const PathArguments& arguments) {
@@ -127,6 +161,7 @@ Response get_polygon(Services& services, const Request& request, const PathArgum
                       "No polygon of this session has the id \"" + arguments[1].substr(0, 64) +
                           "\". GET /v1/sessions/" + session.facts().id + "/polygons lists them.");
     }
+    if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
     return send_features(session, copy, std::get<0>(type),
                          api::write_feature(copy.polygons.front(), session.facts().crs));
 }

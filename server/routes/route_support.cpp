@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/route_support.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <utility>
@@ -13,13 +12,6 @@
 namespace tinsmith::server {
 
 namespace {
-
-/// The shortest text that reads back to the same number.
-std::string text_of(double value) {
-    std::array<char, 32> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    return {digits.data(), end};
-}
 
 api::ProblemType problem_of(api::EncodeFault fault) {
     switch (fault) {
@@ -35,34 +27,13 @@ api::ProblemType problem_of(api::EncodeFault fault) {
     return api::ProblemType::Internal;
 }
 
-/// The version in `"<birth>-<version>"`, perhaps with a suffix for a representation.
-std::optional<std::uint64_t> version_in(std::string_view tag, const std::string& birth) {
-    if (tag.size() < 2 || tag.front() != '"' || tag.back() != '"') return std::nullopt;
-    tag = tag.substr(1, tag.size() - 2);
-    if (!tag.starts_with(birth + '-')) return std::nullopt;
-    tag.remove_prefix(birth.size() + 1);
-    std::uint64_t version = 0;
-    const char* end = tag.data() + tag.size();
-    const auto [stop, error] = std::from_chars(tag.data(), end, version);
-    const bool whole = stop == end || *stop == '-';
-    return error == std::errc() && whole ? std::optional(version) : std::nullopt;
-}
-
-/// The elements of a list such as `"a-1", "b-2"`. A comma within a tag, which ours never have,
-/// makes two of it that match nothing.
-std::vector<std::string_view> listed(std::string_view text) {
-    std::vector<std::string_view> tags;
-    for (std::size_t end = 0; end != text.npos;
-         text.remove_prefix(std::min(end + 1, text.size()))) {
-        end = text.find(',');
-        std::string_view tag = text.substr(0, end);
-        tag.remove_prefix(std::min(tag.find_first_not_of(" \t"), tag.size()));
-        tags.push_back(tag.substr(0, tag.find_last_not_of(" \t") + 1));
-    }
-    return tags;
-}
-
 }  // namespace
+
+std::string text_of(double value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return {digits.data(), end};
+}
 
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id) {
@@ -74,39 +45,6 @@ Response no_such_session(const Request& request, const std::string& id) {
     return refuse(request, api::ProblemType::NoSuchSession,
                   "No session has the id \"" + id.substr(0, 64) +
                       "\". GET /v1/sessions lists them; they are gone when the server stops.");
-}
-
-Step<std::optional<std::uint64_t>> require_if_match(const Request& request,
-                                                    const Session& session) {
-    const std::uint64_t current = session.view().version;
-    std::optional<std::uint64_t> named;
-    bool asked = false;
-    for (const auto& [name, value] : request.headers) {
-        if (name != "if-match") continue;
-        if (value == "*") return std::nullopt;
-        asked = true;
-        for (const std::string_view tag : listed(value)) {
-            const auto version = version_in(tag, session.facts().birth);
-            if (version && named != current) named = version;
-        }
-    }
-    if (!asked || named) return named;
-    return version_mismatch(request, session, current);
-}
-
-Response version_mismatch(const Request& request, const Session& session, std::uint64_t current) {
-    Response response =
-        refuse(request, api::ProblemType::VersionMismatch,
-               "If-Match does not name the current version, which is " + std::to_string(current) +
-                   ": look at the session again, then repeat with the ETag of this answer.");
-    response.with("ETag", session.etag(current));
-    return response;
-}
-
-std::string etag_of(const Session& session, std::uint64_t version, std::string_view suffix) {
-    std::string tag = session.etag(version);
-    tag.insert(tag.size() - 1, suffix);
-    return tag;
 }
 
 Step<std::size_t> require_media_type(const Request& request,

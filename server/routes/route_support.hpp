@@ -6,36 +6,23 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "api/fault.hpp"
 #include "api/formats/gltf.hpp"
 #include "api/requests.hpp"
 #include "server/http_message.hpp"
+#include "server/routes/preconditions.hpp"
+#include "server/routes/step.hpp"
 #include "server/services.hpp"
 
 namespace tinsmith::server {
-
-/// A value on the way through a handler, or the answer that ends it.
-template <typename T>
-using Step = std::variant<T, Response>;
 
 /// The session that the path names first, or 404.
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id);
 
 Response no_such_session(const Request& request, const std::string& id);
-
-/// The version that If-Match asks for; nothing where there is no If-Match or it is "*". Of several
-/// the one that is current counts. 412 where it names none of this session's life.
-Step<std::optional<std::uint64_t>> require_if_match(const Request& request, const Session& session);
-
-/// 412, with the current version as ETag.
-Response version_mismatch(const Request& request, const Session& session, std::uint64_t current);
-
-/// The ETag of one representation: the session's, with a suffix inside the quotes.
-std::string etag_of(const Session& session, std::uint64_t version, std::string_view suffix);
 
 /// Which of the offers the Accept header prefers, or 406 naming all of them.
 Step<std::size_t> require_media_type(const Request& request,
@@ -68,6 +55,8 @@ Response version_ahead(const Request& request, const VersionAhead& ahead);
 
 /// 410, naming the oldest version that is kept.
 Response version_gone(const Request& request, const Session& session, const VersionGone& gone);
+/// The shortest text that reads back to the same number.
+std::string text_of(double value);
 
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request);

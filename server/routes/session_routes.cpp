@@ -10,6 +10,7 @@
 #include "server/random_id.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
+#include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
 #include "server/terrain_reading.hpp"
 
@@ -17,6 +18,7 @@ namespace tinsmith::server {
 
 namespace {
 
+constexpr std::string_view kCursorKind = "session";
 constexpr std::string_view kTerrainTypes =
     "application/json (mesh or grid), image/tiff (GeoTIFF elevations)";
 
@@ -71,11 +73,21 @@ Response make_session(Services& services, const Request& request, std::optional<
 
 }  // namespace
 
-Response list_sessions(Services& services, const Request&, const PathArguments&) {
+Response list_sessions(Services& services, const Request& request, const PathArguments&) {
+    const auto page = require_page(request, kCursorKind);
+    if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
+    const auto& [limit, after] = std::get<0>(page);
     std::vector<api::SessionView> views;
-    for (const auto& session : services.sessions.all())
+    bool more = false;
+    for (const auto& session : services.sessions.all()) {
+        if (session->facts().id <= after) continue;
+        more = views.size() == limit;
+        if (more) break;
         views.push_back(session->view());
-    return ok(kJson, api::write_session_list(views));
+    }
+    Response response = ok(kJson, api::write_session_list(views));
+    if (more) response.with("Link", next_link(request, kCursorKind, limit, views.back().id));
+    return response;
 }
 
 Response create_session(Services& services, const Request& request, const PathArguments&) {
@@ -101,6 +113,7 @@ Response get_session(Services& services, const Request& request, const PathArgum
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
     const api::SessionView view = session.view();
+    if (auto answer = answer_to_conditions(request, session, view.version, {})) return *answer;
     Response response = ok(kJson, api::write_session(view));
     response.with("ETag", session.etag(view.version));
     return response;
@@ -125,6 +138,7 @@ Response delete_session(Services& services, const Request& request,
     auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     auto& session = std::get<0>(found);
+    if (auto refusal = refusal_of_blind_edit(services, request, *session)) return *refusal;
     const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
     switch (services.sessions.remove(*session, std::get<0>(expected))) {
@@ -135,6 +149,7 @@ Response delete_session(Services& services, const Request& request,
         case Removal::Done:
             break;
     }
+    services.forget(*session);
     session.reset();
     // The allocator keeps what large meshes leave behind, a gigabyte easily, and gives it back to
     // the system only when told to.

@@ -34,7 +34,7 @@ struct Home {
     const char* files;    ///< regular expression for the files that may include it
     bool one_file_only;
 };
-const std::array<Home, 8> kHomes = {{
+const std::array<Home, 10> kHomes = {{
     {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http_server\.cpp)", true},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},
@@ -42,6 +42,8 @@ const std::array<Home, 8> kHomes = {{
     {"nlohmann-json", R"(nlohmann/.*)", R"((api|server)/.*\.cpp)", false},
     {"CLI11", R"(CLI/.*)", R"(server/.*\.cpp)", false},
     {"spdlog", R"((spdlog|fmt)/.*)", R"(server/.*\.cpp)", false},
+    {"OpenSSL", R"(openssl/.*)", R"(server/digest\.cpp)", true},
+    {"zlib", R"(zlib\.h)", R"(server/gzip\.cpp)", true},
     {"GoogleTest", R"((gtest|gmock)/.*)", R"(tests/.*)", false},
 }};
 

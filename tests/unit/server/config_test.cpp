@@ -129,6 +129,36 @@ TEST(CommandLine, TakesAFileToo) {
     EXPECT_EQ(config.http.limits.max_sessions, 6U);
 }
 
+TEST(CommandLine, ReadsWhoMayCallAndHow) {
+    EXPECT_TRUE(serve({}).policy.cors_origins.empty());
+    EXPECT_FALSE(serve({}).policy.require_if_match);
+    const ServeConfig flags =
+        serve({"--cors-origin", "https://a.example", "--cors-origin", "http://localhost:3000",
+               "--require-if-match", "--mesh-cache", "1MB", "--kept-answers", "0"});
+    EXPECT_EQ(flags.policy.cors_origins,
+              (std::vector<std::string>{"https://a.example", "http://localhost:3000"}));
+    EXPECT_TRUE(flags.policy.require_if_match);
+    EXPECT_EQ(flags.http.limits.mesh_cache, 1U << 20);
+    EXPECT_EQ(flags.http.limits.kept_answers, 0U);
+    const TemporaryFile file(
+        "[serve]\nrequire-if-match = true\ncors-origin = [\"https://a.example\", \"*\"]\n");
+    const ServeConfig lines = serve({"--config", file.path()});
+    EXPECT_TRUE(lines.policy.require_if_match);
+    EXPECT_EQ(lines.policy.cors_origins, (std::vector<std::string>{"https://a.example", "*"}));
+    ::setenv("TINSMITH_CORS_ORIGIN", "https://a.example,https://b.example", 1);
+    ::setenv("TINSMITH_REQUIRE_IF_MATCH", "true", 1);
+    const ServeConfig environment = serve({});
+    ::unsetenv("TINSMITH_CORS_ORIGIN");
+    ::unsetenv("TINSMITH_REQUIRE_IF_MATCH");
+    EXPECT_TRUE(environment.policy.require_if_match);
+    EXPECT_EQ(environment.policy.cors_origins,
+              (std::vector<std::string>{"https://a.example", "https://b.example"}));
+    for (const char* bad : {"a.example", "https://a.example/", "https://", "null", "",
+                            "https://*.example", "HTTPS://a.example"}) {
+        EXPECT_EQ(exit_code({"serve", "--cors-origin", bad}), kExitUsage) << bad;
+    }
+}
+
 TEST(CommandLine, RefusesAFileWithUnknownLines) {
     const TemporaryFile file("[serve]\nprot = 9002\n");
     EXPECT_EQ(exit_code({"serve", "--config", file.path()}), kExitUsage);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "server/answer_finish.hpp"
 #include "server/router.hpp"
 #include "server/routes/route_table.hpp"
 #include "server/target.hpp"
@@ -41,7 +42,10 @@ class Handlers : public testing::Test {
         request.headers = std::move(headers);
         request.body = body;
         request.id = "test";
-        return router.handle(request);
+        request.trace = parse_traceparent(request.header("traceparent").value_or(""));
+        Response response = router.handle(request);
+        finish_answer(services.policy, request, response);
+        return response;
     }
 
     Response post(const std::string& target, const std::string& body,

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/kept_answers.hpp"
+
+#include <iterator>
+#include <new>
+#include <utility>
+
+namespace tinsmith::server {
+
+namespace {
+
+/// The part of all bytes that one answer may take.
+constexpr std::size_t kShare = 8;
+
+std::size_t bytes_of(const KeptAnswers::Name& name, const Response& answer) {
+    // Names stand in three places; the rest is about what the containers take.
+    std::size_t bytes = 3 * (name.first.size() + name.second.size()) + 512;
+    for (const auto& [key, value] : answer.headers)
+        bytes += sizeof(NameValue) + key.size() + value.size();
+    return bytes + answer.body.size();
+}
+
+/// What was done must not look undone for want of memory.
+bool copy_if_possible(const Response& answer, Response& copy) {
+    try {
+        copy = answer;
+        return true;
+    } catch (const std::bad_alloc&) {
+        copy = {};
+        return false;
+    }
+}
+
+/// Puts the name last in both orders, or throws and leaves them. The second one.
+template <typename Order, typename ByScope>
+auto& append(Order& order, ByScope& of_scope, const KeptAnswers::Name& name) {
+    order.push_back(name);
+    try {
+        const auto [of, is_new] = of_scope.try_emplace(name.first, 1, name);
+        if (!is_new) of->second.push_back(name);
+        return of->second;
+    } catch (...) {
+        order.pop_back();
+        throw;
+    }
+}
+
+}  // namespace
+
+KeptAnswers::Verdict KeptAnswers::begin(const Name& name, const std::string& print) {
+    const std::lock_guard lock(mutex_);
+    make_room();
+    Entry fresh;
+    fresh.print = print;
+    const auto [place, is_new] = entries_.try_emplace(name, std::move(fresh));
+    if (is_new) return GoOn{};
+    const Entry& entry = place->second;
+    if (entry.print != print) return OtherRequest{};
+    if (entry.running) return StillRunning{};
+    if (!entry.whole) return NoBody{};
+    return entry.answer;
+}
+
+void KeptAnswers::keep(const Name& name, const Response& answer) {
+    const std::lock_guard lock(mutex_);
+    const auto place = entries_.find(name);
+    if (place == entries_.end()) return;
+    Entry& entry = place->second;
+    entry.whole = bytes_of(name, answer) <= bounds_.bytes / kShare;
+    if (entry.whole) entry.whole = copy_if_possible(answer, entry.answer);
+    entry.bytes = bytes_of(name, entry.answer);
+    entry.since = clock_();
+    auto& siblings = append(order_, of_scope_, name);
+    entry.place = std::prev(order_.end());
+    entry.running = false;
+    bytes_ += entry.bytes;
+    if (siblings.size() > bounds_.per_scope) erase(entries_.find(siblings.front()));
+    make_room();
+}
+
+void KeptAnswers::drop(const Name& name) noexcept {
+    const std::lock_guard lock(mutex_);
+    const auto place = entries_.find(name);
+    if (place != entries_.end() && place->second.running) entries_.erase(place);
+}
+
+/// Drops what is too old or too much. Requires: the lock.
+void KeptAnswers::make_room() {
+    const Time now = clock_();
+    while (!order_.empty()) {
+        const auto oldest = entries_.find(order_.front());
+        if (bytes_ <= bounds_.bytes && now - oldest->second.since < bounds_.age) return;
+        erase(oldest);
+    }
+}
+
+/// Requires: the lock, and the oldest of its scope, not running.
+void KeptAnswers::erase(Entries::iterator entry) {
+    const auto siblings = of_scope_.find(entry->first.first);
+    siblings->second.pop_front();
+    if (siblings->second.empty()) of_scope_.erase(siblings);
+    order_.erase(entry->second.place);
+    bytes_ -= entry->second.bytes;
+    entries_.erase(entry);
+}
+
+void KeptAnswers::forget(const std::string& scope) {
+    const std::lock_guard lock(mutex_);
+    for (auto of = of_scope_.find(scope); of != of_scope_.end(); of = of_scope_.find(scope))
+        erase(entries_.find(of->second.front()));
+}
+
+std::size_t KeptAnswers::size() const {
+    const std::lock_guard lock(mutex_);
+    return order_.size();
+}
+
+std::size_t KeptAnswers::bytes() const {
+    const std::lock_guard lock(mutex_);
+    return bytes_;
+}
+
+}  // namespace tinsmith::server

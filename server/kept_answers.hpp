@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <list>
+#include <map>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "server/http_message.hpp"
+
+namespace tinsmith::server {
+
+/// The answers to requests that had an Idempotency-Key, kept so that a retry is answered and not
+/// done again.
+///
+/// Laws: of requests with one key in one scope, one at a time is let through, whatever the threads
+/// do; once it has ended with an answer, none is let through for as long as that is kept. An answer
+/// is kept for `age`, or until `per_scope` others of its scope or `bytes` of all came after it. One
+/// that takes more than a share of the bytes is kept without its body: the retry is told that, and
+/// still not done again. A key whose request is running is never dropped.
+/// Not promised: memory of a key that has been dropped, or over a restart.
+class KeptAnswers {
+  public:
+    using Time = std::chrono::steady_clock::time_point;
+    using Clock = std::function<Time()>;
+
+    struct Bounds {
+        std::size_t bytes = std::size_t{64} << 20;
+        std::size_t per_scope = 10'000;
+        std::chrono::seconds age = std::chrono::hours(24);
+    };
+
+    /// A session's birth, or empty for what belongs to none; and the client's key.
+    using Name = std::pair<std::string, std::string>;
+
+    struct GoOn {};          ///< the first of its kind: do it, then `keep` or `drop`
+    struct OtherRequest {};  ///< the key came with another request before
+    struct StillRunning {};
+    struct NoBody {};  ///< done, but the answer was too large
+    using Verdict = std::variant<GoOn, Response, OtherRequest, StillRunning, NoBody>;
+
+    explicit KeptAnswers(Bounds bounds, Clock clock = std::chrono::steady_clock::now)
+        : bounds_(bounds), clock_(std::move(clock)) {}
+
+    /// `print` tells requests apart: equal for equal ones. After GoOn the caller must end with one
+    /// of `keep` and `drop`.
+    Verdict begin(const Name& name, const std::string& print);
+    void keep(const Name& name, const Response& answer);
+    void drop(const Name& name) noexcept;
+
+    /// Drops all of one scope, but for what is running.
+    void forget(const std::string& scope);
+
+    std::size_t size() const;
+    std::size_t bytes() const;
+
+  private:
+    struct Entry {
+        std::string print;
+        bool running = true;
+        bool whole = true;
+        Response answer;
+        std::size_t bytes = 0;
+        Time since;
+        std::list<Name>::iterator place;  ///< in `order_`, once it is not running
+    };
+    using Entries = std::map<Name, Entry>;
+
+    void make_room();
+    void erase(Entries::iterator entry);
+
+    const Bounds bounds_;
+    const Clock clock_;
+    mutable std::mutex mutex_;
+    Entries entries_;
+    std::list<Name> order_;  ///< of those that are kept, the oldest in front
+    std::map<std::string, std::deque<Name>> of_scope_;  ///< the same by scope, in the same order
+    std::size_t bytes_ = 0;
+};
+
+}  // namespace tinsmith::server
