@@ -207,8 +207,8 @@ class March {
     bool enter_by(const Entry& entry);
     Location locate_on_boundary(Point2 p) const;
     void visit_boundary(VertexId v);
-    bool enter_other_fan();
-    VertexId vertex_of_other_fan();
+    bool enter_other_fan(double distance);
+    VertexId vertex_of_other_fan(double distance);
     Location locate_beside(TriangleId t, Point2 p) const;
     bool is_one_with_end(double distance) const;
     void leave_mesh();
