@@ -156,6 +156,7 @@ class March {
     bool split_beyond(Side entry);
     std::optional<VertexId> end_within(Side edge, double distance) const;
     std::optional<VertexId> end_beside(Side edge);
+    bool is_ahead_of(Point2 p, Point2 q) const;
     bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
     void measure(VertexId v);
