@@ -51,7 +51,7 @@ bool March::connect(VertexId t) {
 
 /// Whether the march stands beyond the position, which is not the segment's end.
 bool March::is_passed(Point2 goal) const {
-    return goal != end_ && along(goal) <= along(tin_.plan(at_));
+    return goal != end_ && !is_ahead_of(tin_.plan(at_), goal);
 }
 
 /// Whether `connect` finds a first step towards t.

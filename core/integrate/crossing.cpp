@@ -123,7 +123,7 @@ std::optional<Point2> March::find_split_along(Side edge, Point2 p) const {
                        p.y + (far.y - p.y) * (step / length)};
         if (distance_to_segment(q, start_, end_) > std::max(options_.snap, reach_of_rounding_))
             return {};
-        if (at_.valid() && along(q) <= along(tin_.plan(at_))) return {};
+        if (at_.valid() && !is_ahead_of(tin_.plan(at_), q)) return {};
         if (can_split(edge, q)) return q;
     }
     return {};
@@ -309,17 +309,23 @@ std::optional<VertexId> March::end_within(Side edge, double distance) const {
         const Point2 p = tin_.plan(v);
         if (!is_near_segment(p, distance)) continue;
         // Never back: what is not ahead of where the march stands was passed.
-        if (at_.valid() && along(p) <= along(tin_.plan(at_))) continue;
+        if (at_.valid() && !is_ahead_of(tin_.plan(at_), p)) continue;
         distance = distance_to_segment(p, start_, end_);
         nearest = v;
     }
     return nearest;
 }
 
+/// Whether q is farther along the input segment than p. Right where the two are so near each other
+/// that `along` is the same for both: their difference is exact there.
+bool March::is_ahead_of(Point2 p, Point2 q) const {
+    return (q.x - p.x) * (end_.x - start_.x) + (q.y - p.y) * (end_.y - start_.y) > 0.0;
+}
+
 /// Whether the way goes through the vertex, though it is inside a facet.
 bool March::is_ahead_within_snap(VertexId v) const {
     const Point2 p = tin_.plan(v);
-    return is_near_segment(p, way_.meets_all ? near_ : snap_) && along(p) > along(tin_.plan(at_));
+    return is_near_segment(p, way_.meets_all ? near_ : snap_) && is_ahead_of(tin_.plan(at_), p);
 }
 
 /// An end of the edge that is one with the vertex where the march stands, to within rounding, and

@@ -158,9 +158,13 @@ bool March::march_to_end() {
                 break;
             }
             case Departure::Kind::Outside:
-                if (enter_other_fan()) break;
+                // Along edges rather than through the air: a chain is to have no gap but for
+                // rounding.
+                if (enter_other_fan(std::min(near_, reach_of_rounding_))) break;
                 if (const Side edge = detour(along(end_)); edge.valid()) {
                     step_along(edge, far_end(edge));
+                } else if (snap_ > 0.0 && enter_other_fan(near_)) {
+                    break;
                 } else if (is_within(tin_.plan(at_), end_, near_)) {
                     // The end is outside, but one with this vertex to within rounding.
                     log_elevation(1.0);

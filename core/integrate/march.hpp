@@ -156,6 +156,7 @@ class March {
     bool split_beyond(Side entry);
     std::optional<VertexId> end_within(Side edge, double distance) const;
     std::optional<VertexId> end_beside(Side edge);
+    bool is_ahead_of(Point2 p, Point2 q) const;
     bool is_ahead_within_snap(VertexId v) const;
     void count_crossing(Side edge);
     void measure(VertexId v);
@@ -207,8 +208,8 @@ class March {
     bool enter_by(const Entry& entry);
     Location locate_on_boundary(Point2 p) const;
     void visit_boundary(VertexId v);
-    bool enter_other_fan();
-    VertexId vertex_of_other_fan();
+    bool enter_other_fan(double distance);
+    VertexId vertex_of_other_fan(double distance);
     Location locate_beside(TriangleId t, Point2 p) const;
     bool is_one_with_end(double distance) const;
     void leave_mesh();

@@ -161,29 +161,35 @@ void March::visit_boundary(VertexId v) {
 
 /// Where fans touch or all but touch, a vertex that is on one of them may be one with a vertex of
 /// another, or lie inside another by exact predicates, and the way may go on there: stands on a
-/// vertex of that fan, once from each vertex. False: there is no such fan.
-bool March::enter_other_fan() {
+/// vertex of that fan within the distance, once from each vertex. False: there is no such fan.
+bool March::enter_other_fan(double distance) {
     if (detours_.contains(at_)) return false;
-    const VertexId v = vertex_of_other_fan();
+    const VertexId v = vertex_of_other_fan(distance);
     if (!v.valid()) return false;
     is_delicate_ = true;
     detours_.insert(at_);
     visit_boundary(at_);
+    // What is farther than rounding is a part outside: without it the line would not be closed.
+    if (distance_between(tin_.plan(at_), tin_.plan(v)) > reach_of_rounding_) {
+        outside_ = {tin_.plan(at_), tin_.plan(v)};
+        close_outside();
+    }
     tally_.chains.push_back({path_index_, {}});
     stand_on(v);
     if (v != at_) detours_.insert(v);
     return true;
 }
 
-VertexId March::vertex_of_other_fan() {
+VertexId March::vertex_of_other_fan(double distance) {
     const Point2 p = tin_.plan(at_);
-    const std::vector<VertexId> around = tin_.boundary().near(p, p, near_);
+    const std::vector<VertexId> around = tin_.boundary().near(p, p, distance);
     for (const VertexId v : around) {
         if (v == at_ || v.index() >= tin_.vertex_count() || !is_near_segment(tin_.plan(v), near_))
             continue;
         const Point2 q = tin_.plan(v);
-        if ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) > near_ * near_ || q == end_ ||
-            along(q) < along(p) || find_edge(tin_, at_, v).valid() || detours_.contains(v))
+        if ((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) > distance * distance ||
+            q == end_ || along(q) < along(p) || find_edge(tin_, at_, v).valid() ||
+            detours_.contains(v))
             continue;
         if (leave(tin_, v, end_, side_from(tin_, v)).kind != Departure::Kind::Outside) return v;
     }

@@ -95,7 +95,8 @@ std::optional<std::vector<Replaced::Edge>> chain_edges(const Attempt& attempt) {
 }
 
 double chain_reach(const Attempt& attempt) {
-    return std::max(attempt.options.snap, attempt.reach);
+    // Distances are rounded: what is at the reach itself may be beyond it.
+    return std::max(attempt.options.snap, attempt.reach * (1.0 - 0x1p-20));
 }
 
 std::optional<BrokenPromise> find_broken_promise(const Attempt& attempt) {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/integrate/distance.hpp"
 #include "core/mesh/triangle_map.hpp"
 #include "core/mesh/triangle_set.hpp"
 #include "core/mesh/walk.hpp"
@@ -90,7 +91,8 @@ class RegionSearch {
     }
 
     /// A path that left the mesh within rounding of the boundary did so from a vertex that is not
-    /// on it: the last step, which no edge takes, goes to an end of the boundary edge there.
+    /// on it: the last step, which no edge takes, goes to the nearer end of the nearest boundary
+    /// edge there. So it leaves most of the needle between them on the right side.
     void close_joints() {
         std::sort(joints_.begin(), joints_.end());
         for (std::size_t i = 0; i < joints_.size();) {
@@ -99,14 +101,26 @@ class RegionSearch {
             for (; i < joints_.size() && joints_[i].first == v; ++i)
                 ends += joints_[i].second;
             if (ends == 0 || boundary_side_from(tin_, v).valid()) continue;
-            VertexId outlet;
-            for_each_side_at(tin_, v, [&](Side s) {
-                while (tin_.origin(s) != v)
-                    s = s.next();
-                if (!tin_.twin(s.next()).valid()) outlet = tin_.destination(s);
-            });
-            if (outlet.valid()) add_jump(v, outlet, ends);
+            if (const VertexId outlet = outlet_at(v); outlet.valid()) add_jump(v, outlet, ends);
         }
+    }
+
+    VertexId outlet_at(VertexId v) const {
+        const Point2 p = tin_.plan(v);
+        VertexId outlet;
+        double least = HUGE_VAL;
+        for_each_side_at(tin_, v, [&](Side s) {
+            while (tin_.origin(s) != v)
+                s = s.next();
+            if (tin_.twin(s.next()).valid()) return;
+            const VertexId a = tin_.destination(s), b = tin_.apex(s);
+            const Point2 at_a = tin_.plan(a), at_b = tin_.plan(b);
+            const double distance = distance_to_segment(p, at_a, at_b);
+            if (!(distance < least)) return;
+            least = distance;
+            outlet = distance_between(p, at_a) <= distance_between(p, at_b) ? a : b;
+        });
+        return outlet;
     }
 
     /// One entry for each side, those without a jump left out.

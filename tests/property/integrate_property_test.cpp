@@ -22,9 +22,7 @@ struct Defect {
     std::uint64_t per_million;
 };
 constexpr std::array kOpen{
-    Defect{"G3", 5},   // needle_outline_piece_of_chain_lost
-    Defect{"G8", 30},  // a second request across a snapped spike or across needles
-    Defect{"OWN", 5},  // needles only: the vertex may be another path's
+    Defect{"G8", 10},  // needle_second_request_needless_vertex
 };
 
 class IntegrateProperty : public testing::TestWithParam<std::uint64_t> {};

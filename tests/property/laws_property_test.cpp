@@ -27,9 +27,9 @@ TEST_P(LawsProperty, HoldBetweenTwoIntegrations) {
                       std::string(test::name_of(random.kind())) + ": " + fault);
     }
     // Known and not mended; these numbers only ever shrink.
-    run.allow("TWICE", 2000, run.operations());           // twice_adds_a_vertex
+    run.allow("TWICE", 2000, run.operations());          // twice_adds_a_vertex
     run.allow("TWICE_SNAPPED", 7000, run.operations());  // the same with a snap distance
-    run.allow("REVERSED", 6000, run.operations());        // reversed_ring_other_vertices
+    run.allow("REVERSED", 6000, run.operations());       // reversed_ring_other_vertices
     run.judge();
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "tests/verify/checks.hpp"
 
@@ -11,10 +12,13 @@ namespace {
 
 /// A position that is, or calls for, a vertex. What is nearer than `radius` may be one with it.
 struct Place {
-    enum class Kind { OldVertex, Event, NewVertex };
+    /// Actual: a segment crosses a constrained edge as that lay in the mesh before its request.
+    enum class Kind { OldVertex, Event, NewVertex, Actual };
     Point2 p;
     Kind kind;
     double radius;
+    std::size_t line = SIZE_MAX;   ///< of a crossing: the segment's number
+    std::size_t other = SIZE_MAX;  ///< and the other's, where that is a segment too
 };
 
 /// An edge of the mesh or a segment, left end first; the same one in either direction is equal.
@@ -93,19 +97,27 @@ void add_crossings(const std::vector<Line>& segments, const Snapshot& origin, do
                                   [](const Line& l, double x) { return l.a.x < x; });
         for (; e != edges.end() && e->a.x <= s.b.x + snap; ++e) {
             if (!s.is_box_near(*e, snap)) continue;
+            const std::size_t first = places.size();
             if (cross_properly(s.a, s.b, e->a, e->b))
                 places.push_back(crossing(s, *e, reach));
             else if (snap > 0.0)
                 add_nearest(s, *e, reach, snap, places);
+            for (std::size_t i = first; i < places.size(); ++i)
+                places[i].line = k;
         }
         for (std::size_t m = k + 1; m < segments.size() && segments[m].a.x <= s.b.x + snap; ++m) {
             const Line& other = segments[m];
             if (!s.is_box_near(other, snap)) continue;
+            const std::size_t first = places.size();
             if (cross_properly(s.a, s.b, other.a, other.b)) {
                 const Place place = crossing(s, other, reach);
                 if (origin.grid.holds(place.p, place.radius)) places.push_back(place);
             } else if (snap > 0.0) {
                 add_nearest(s, other, reach, snap, places);
+            }
+            for (std::size_t i = first; i < places.size(); ++i) {
+                places[i].line = k;
+                places[i].other = m;
             }
         }
     }
@@ -125,12 +137,14 @@ class Clusters {
     /// The places near the first that is in no cluster yet, and all near those; empty at the end.
     const std::vector<std::size_t>& next() {
         cluster_.clear();
-        while (at_ < places_.size() && (taken_[at_] || places_[at_].kind == Place::Kind::OldVertex))
+        while (at_ < places_.size() &&
+               (taken_[at_] || places_[at_].kind == Place::Kind::OldVertex || is_actual(at_)))
             ++at_;
         if (at_ == places_.size()) return cluster_;
         take(at_);
         for (std::size_t k = 0; k < cluster_.size(); ++k) {
             const std::size_t here = cluster_[k];
+            if (is_actual(here)) continue;  // counts where it is, and joins nothing
             const double x = places_[here].p.x;
             for (std::size_t j = here; j-- > 0 && places_[j].p.x >= x - widest_;)
                 visit(here, j);
@@ -141,6 +155,7 @@ class Clusters {
     }
 
   private:
+    bool is_actual(std::size_t i) const { return places_[i].kind == Place::Kind::Actual; }
     void take(std::size_t i) {
         taken_[i] = true;
         cluster_.push_back(i);
@@ -161,11 +176,51 @@ class Clusters {
     std::vector<std::size_t> cluster_;
 };
 
+/// How often segments cross constrained edges in the cluster beyond what they cross there by the
+/// input alone: where rounding or a snap bent a chain, or left the way back beside the way there,
+/// it is crossed more often than its segment.
+std::size_t count_bent(const std::vector<Place>& places, const std::vector<std::size_t>& cluster) {
+    std::map<std::size_t, std::pair<std::size_t, std::size_t>> of_line;  // actual, by the input
+    for (const std::size_t i : cluster) {
+        const Place& place = places[i];
+        if (place.kind == Place::Kind::Actual) ++of_line[place.line].first;
+        if (place.kind != Place::Kind::Event || place.line == SIZE_MAX) continue;
+        ++of_line[place.line].second;
+        if (place.other != SIZE_MAX) ++of_line[place.other].second;
+    }
+    std::size_t found = 0;
+    for (const auto& [line, counts] : of_line)
+        found += counts.first - std::min(counts.first, counts.second);
+    return found;
+}
+
 }  // namespace
 
+void add_actual_crossings(const Snapshot& before, std::span<const core::Shape> shapes,
+                          std::vector<ActualCrossing>& crossings) {
+    std::vector<Line> constraints;
+    double longest = 0.0;
+    for (const auto& [v, w] : before.data.constraints) {
+        constraints.emplace_back(before.data.vertices[v].plan(), before.data.vertices[w].plan());
+        longest = std::max(longest, constraints.back().b.x - constraints.back().a.x);
+    }
+    sort_out(constraints);
+    std::vector<Line> segments;
+    for (const Segment& s : segments_of(shapes))
+        segments.emplace_back(s.a, s.b);
+    sort_out(segments);
+    for (const Line& s : segments) {
+        auto c = std::lower_bound(constraints.begin(), constraints.end(), s.a.x - longest,
+                                  [](const Line& l, double x) { return l.a.x < x; });
+        for (; c != constraints.end() && c->a.x <= s.b.x; ++c)
+            if (s.is_box_near(*c, 0.0) && cross_properly(s.a, s.b, c->a, c->b))
+                crossings.push_back({s.a, s.b, crossing_point(s.a, s.b, c->a, c->b)});
+    }
+}
+
 Faults check_economy(const Snapshot& origin, const core::MeshData& after,
-                     std::span<const core::Shape> shapes, double reach, double snap,
-                     std::size_t forced) {
+                     std::span<const core::Shape> shapes, std::span<const ActualCrossing> crossings,
+                     double reach, double snap, std::size_t forced) {
     std::vector<Place> places;
     std::vector<Line> points, segments;
     for (const auto& shape : shapes)
@@ -179,6 +234,13 @@ Faults check_economy(const Snapshot& origin, const core::MeshData& after,
         segments.emplace_back(s.a, s.b);
     sort_out(segments);
     add_crossings(segments, origin, reach, snap, places);
+    for (const ActualCrossing& actual : crossings) {
+        const auto line =
+            std::lower_bound(segments.begin(), segments.end(), Line(actual.a, actual.b),
+                             [](const Line& l, const Line& r) { return l.key() < r.key(); });
+        places.push_back({actual.p, Place::Kind::Actual, reach,
+                          static_cast<std::size_t>(line - segments.begin())});
+    }
     for (std::size_t v = 0; v < after.vertices.size(); ++v)
         places.push_back(
             {after.vertices[v].plan(),
@@ -195,6 +257,7 @@ Faults check_economy(const Snapshot& origin, const core::MeshData& after,
             events += places[i].kind == Place::Kind::Event;
             added += places[i].kind == Place::Kind::NewVertex;
         }
+        if (added > events + forced) events += count_bent(places, cluster);
         if (added > events + forced)
             faults.push_back(words("G8 at ", places[cluster[0]].p.x, " ", places[cluster[0]].p.y,
                                    ": ", events, " reasons, ", old, " old and ", added,

@@ -48,14 +48,17 @@ Faults Verifier::step(core::MeshData after, std::span<const core::Shape> shapes,
     const bool swaps =
         options.improve == core::Improve::Paper || options.improve == core::Improve::Bounded;
     all_.insert(all_.end(), shapes.begin(), shapes.end());
+    // The constraints of the first mesh are edges of it, which count as such.
+    if (forced != kUncounted && now_ != origin_) add_actual_crossings(*now_, shapes, crossings_);
     widest_reach_ = std::max(widest_reach_, 2 * chain_reach(edit));
     widest_snap_ = std::max(widest_snap_, edit.options.snap);
     if (forced != kUncounted && comparable && (!swaps || shapes.size() == 1))
-        append(faults,
-               check_economy(*origin_, next->data, all_, widest_reach_, widest_snap_, forced));
+        append(faults, check_economy(*origin_, next->data, all_, crossings_, widest_reach_,
+                                     widest_snap_, forced));
     if (swaps || bending != shapes.end()) {
         origin_ = next;
         all_.clear();
+        crossings_.clear();
         widest_reach_ = 0.0;
         widest_snap_ = 0.0;
     }

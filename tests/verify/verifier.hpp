@@ -28,9 +28,10 @@ class Verifier {
   private:
     std::shared_ptr<const Snapshot> origin_;
     std::shared_ptr<const Snapshot> now_;
-    std::vector<core::Shape> all_;  ///< what was asked since `origin_`
-    double widest_reach_ = 0.0;     ///< of those requests
-    double widest_snap_ = 0.0;      ///< likewise
+    std::vector<core::Shape> all_;           ///< what was asked since `origin_`
+    std::vector<ActualCrossing> crossings_;  ///< of those requests
+    double widest_reach_ = 0.0;              ///< of those requests
+    double widest_snap_ = 0.0;               ///< likewise
 };
 
 }  // namespace tinsmith::verify

@@ -256,6 +256,68 @@ TEST_F(Planted, ANeedlessVertex) {
     EXPECT_FAULT(mesh, "G8 at");
 }
 
+/// A spike whose way back a snap put beside the way there, and a line across both.
+class BentSpike : public testing::Test {
+  protected:
+    void SetUp() override {
+        before_.vertices = {{0, 0, 0}, {6.8773, 5.0404, 0}, {5.828, 5.8763, 0}, {7, 6, 0}};
+        before_.triangles = {{0, 1, 2}, {1, 3, 2}};
+        const Point2 root{0.5795280133684149, 4.241443790551555};
+        spike_ = {{{{{root, {6.5347, 5.3181}, root}, false}}}};
+        across_ = {{{{{{9, 0}, {4, 8}}, false}}}};
+        snapped_.snap = 0.0041540122988920165;
+        auto tin = core::build_tin(before_);
+        ASSERT_TRUE(tin.ok());
+        ASSERT_TRUE(core::integrate(*tin, spike_, snapped_).ok());
+        between_ = tin->to_data();
+        ASSERT_TRUE(core::integrate(*tin, across_, {}).ok());
+        after_ = tin->to_data();
+    }
+    Faults check(const MeshData& after) const {
+        Verifier verifier(before_);
+        EXPECT_EQ(verifier.step(between_, spike_, snapped_, 0.0), Faults{});
+        return verifier.step(after, across_, {}, 0.0);
+    }
+
+    MeshData before_, between_, after_;
+    std::vector<core::Shape> spike_, across_;
+    core::IntegrateOptions snapped_;
+};
+
+TEST_F(BentSpike, IsCrossedTwiceForTwoReasons) {
+    EXPECT_EQ(check(after_), Faults{});
+}
+
+TEST_F(BentSpike, IsNoReasonForAThirdVertex) {
+    // On the line across, between the two places where it crosses the spike's chain.
+    std::vector<std::uint32_t> crossings;
+    for (std::uint32_t v = 0; v < after_.vertices.size(); ++v)
+        if (std::fabs(after_.vertices[v].x - 5.7637) < 0.001) crossings.push_back(v);
+    ASSERT_EQ(crossings.size(), 2U);
+    const std::uint32_t a = crossings[0], b = crossings[1];
+    const Point3 p = after_.vertices[a], q = after_.vertices[b];
+    MeshData mesh = after_;
+    const auto m = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back({(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2});
+    for (std::size_t t = 0; t < after_.triangles.size(); ++t) {
+        for (unsigned i = 0; i < 3; ++i) {
+            const std::array<std::uint32_t, 3> corners = after_.triangles[t];
+            const std::uint32_t u = corners[i], v = corners[(i + 1) % 3], w = corners[(i + 2) % 3];
+            if (std::minmax(u, v) != std::minmax(a, b)) continue;
+            mesh.triangles[t] = {u, m, w};
+            mesh.triangles.push_back({m, v, w});
+        }
+    }
+    std::erase_if(mesh.constraints, [&](const auto& edge) {
+        return std::minmax(edge[0], edge[1]) == std::minmax(a, b);
+    });
+    mesh.constraints.push_back({a, m});
+    mesh.constraints.push_back({b, m});
+    const Faults faults = check(mesh);
+    ASSERT_FALSE(faults.empty());
+    EXPECT_EQ(faults.front().substr(0, 5), "G8 at");
+}
+
 TEST_F(Planted, AnOutlineCutShort) {
     // A corner triangle goes; the mesh stays valid and covers less.
     MeshData mesh = after_;
