@@ -34,7 +34,6 @@ constexpr std::array kLibraryHeaders{"remote_addr", "remote_port", "local_addr",
 
 /// The answers that may not tell a length, or not that of their empty body (RFC 9110 8.6); the
 /// library tells one.
-constexpr int kNoContent = 204;
 constexpr int kNotModified = 304;
 
 /// How long a refused connection stays open after the answer. Closing with unread bytes makes the
@@ -237,7 +236,7 @@ class HttpServer::Impl {
         server_.set_post_routing_handler([](const httplib::Request&, httplib::Response& out) {
             if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
             out.headers.erase("Accept-Ranges");
-            const bool is_silent = out.status == kNoContent || out.status == kNotModified;
+            const bool is_silent = out.status == kNotModified;
             if (out.body.empty() && is_silent) out.headers.erase("Content-Length");
         });
     }

@@ -15,10 +15,6 @@ Response created(std::string location, std::string content_type, std::string bod
     return response;
 }
 
-Response no_content() {
-    return {204, {}, {}, {}, false};
-}
-
 Response not_modified(std::string etag) {
     Response response{304, {}, {}, {}, false};
     response.with("ETag", std::move(etag));

@@ -17,12 +17,11 @@ inline constexpr const char* kGlb = "model/gltf-binary";
 /// What the strong tag of a representation has in the end when it is sent as gzip.
 inline constexpr std::string_view kGzipSuffix = "-gzip";
 
-/// 200 with a body.
+/// 200 with a body, which may be empty. No answer is a 204: some clients wait for a body that its
+/// Content-Length denies.
 Response ok(std::string content_type, std::string body);
 /// 201 with a body and where the new thing is.
 Response created(std::string location, std::string content_type, std::string body);
-/// 204: done, nothing to say.
-Response no_content();
 /// 304: what the client has under that tag is still what would be sent.
 Response not_modified(std::string etag);
 /// The problem as application/problem+json, its status from the table of problems.

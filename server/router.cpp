@@ -130,7 +130,7 @@ Response Router::dispatch(const Request& request) const {
         if (entry->route.method == "GET") allow += ", HEAD";
     }
     Response response = request.method == "OPTIONS"
-                            ? no_content()
+                            ? ok({}, {})
                             : refuse(request, api::ProblemType::MethodNotAllowed,
                                      "This path answers to: " + allow + ".");
     response.with("Allow", allow);

@@ -141,6 +141,7 @@ Response delete_session(Services& services, const Request& request,
     if (auto refusal = refusal_of_blind_edit(services, request, *session)) return *refusal;
     const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
+    std::string last = api::write_session(session->view());
     switch (services.sessions.remove(*session, std::get<0>(expected))) {
         case Removal::OtherVersion:
             return version_mismatch(request, *session, session->view().version);
@@ -154,7 +155,7 @@ Response delete_session(Services& services, const Request& request,
     // The allocator keeps what large meshes leave behind, a gigabyte easily, and gives it back to
     // the system only when told to.
     ::malloc_trim(0);
-    return no_content();
+    return ok(kJson, std::move(last));
 }
 
 }  // namespace tinsmith::server

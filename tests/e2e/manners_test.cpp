@@ -99,7 +99,7 @@ TEST_F(Manners, AnswerPreflightsAndLetPagesReadRefusals) {
         send("OPTIONS", session + "/polygons",
              {kPage, "Access-Control-Request-Method: POST",
               "Access-Control-Request-Headers: content-type,if-match,idempotency-key"});
-    EXPECT_EQ(preflight.status, 204);
+    EXPECT_EQ(preflight.status, 200);
     EXPECT_EQ(preflight.header("allow"), "OPTIONS, POST, GET, HEAD");
     EXPECT_EQ(preflight.header("access-control-allow-origin"), "https://maps.example");
     EXPECT_EQ(preflight.header("access-control-allow-methods"), "OPTIONS, POST, GET, HEAD");

@@ -43,7 +43,7 @@ TEST_F(Paging, GoesThroughSessions) {
     EXPECT_EQ(next(ask("GET", "/v1/sessions?limit=3")), "");
     const Response first = ask("GET", "/v1/sessions?limit=2");
     EXPECT_EQ(json::parse(first.body)["sessions"].size(), 2U);
-    ASSERT_EQ(ask("DELETE", "/v1/sessions/b").status, 204);
+    ASSERT_EQ(ask("DELETE", "/v1/sessions/b").status, 200);
     const Response second = ask("GET", next(first));
     ASSERT_EQ(second.status, 200) << second.body;
     EXPECT_EQ(json::parse(second.body)["sessions"][0]["id"], "c") << "the place stays good";
@@ -117,7 +117,7 @@ TEST_F(Paging, SendsACodedMeshOfTheSameTag) {
     EXPECT_EQ(same.status, 304);
     EXPECT_EQ(header(same, "ETag"), tag);
     EXPECT_EQ(ask("GET", mesh, {{"if-none-match", tag}}).status, 200) << "takes no gzip now";
-    EXPECT_EQ(ask("DELETE", header(made, "Location"), {{"if-match", tag}}).status, 204);
+    EXPECT_EQ(ask("DELETE", header(made, "Location"), {{"if-match", tag}}).status, 200);
 }
 
 }  // namespace
