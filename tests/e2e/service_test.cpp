@@ -103,13 +103,14 @@ TEST_F(Service, AnswersHeadWithoutABody) {
     EXPECT_EQ(connection.read().status, 200);
 }
 
-TEST_F(Service, GivesNoLengthToNoContent) {
+TEST_F(Service, TellsWhatASessionWasWhenItEnds) {
     const std::string session = make_session();
     Connection connection(port());
     connection.send(request_text("DELETE", session));
     const Answer gone = connection.read();
     EXPECT_EQ(gone.status, 200);
-    EXPECT_EQ(gone.header("content-length"), "");
+    EXPECT_EQ(gone.header("content-length"), std::to_string(gone.body.size()));
+    EXPECT_NE(gone.body.find("\"version\":1"), std::string::npos) << gone.body;
     connection.send(request_text("GET", session));
     expect_problem(connection.read(), 404);
 }

@@ -110,8 +110,7 @@ TEST(Cors, AnswersPreflights) {
              {"access-control-request-method", "POST"},
              {"access-control-request-headers", "Content-Type, if-match, idempotency-key,x-evil"}},
             "OPTIONS");
-        return finished(request, ok({}, {}).with("Allow", "OPTIONS, GET, HEAD, POST"),
-                        kTwoOrigins);
+        return finished(request, ok({}, {}).with("Allow", "OPTIONS, GET, HEAD, POST"), kTwoOrigins);
     };
     const Response fine = preflight("https://a.example");
     EXPECT_EQ(header(fine, "Access-Control-Allow-Origin"), "https://a.example");
