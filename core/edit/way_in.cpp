@@ -49,15 +49,16 @@ bool gate_is_before(Point2 p, Point2 q, const Gate& a, const Gate& b) {
     return crossing_share(p, q, a.right, a.left) < crossing_share(p, q, b.right, b.left);
 }
 
-/// How far along the line, to within rounding: for sorting, never for a decision.
-double share_of(const Tin& tin, Point2 p, Point2 q, const BoundaryContact& contact) {
-    if (contact.is_vertex()) {
-        const double dx = q.x - p.x, dy = q.y - p.y;
-        const Point2 v = tin.plan(contact.vertex);
-        return ((v.x - p.x) * dx + (v.y - p.y) * dy) / (dx * dx + dy * dy);
-    }
-    return crossing_share(p, q, tin.plan(tin.origin(contact.side)),
-                          tin.plan(tin.destination(contact.side)));
+// How far along the line, to within rounding: for sorting, never for a decision.
+
+double share_of(const Tin& tin, Point2 p, Point2 q, VertexId vertex) {
+    const double dx = q.x - p.x, dy = q.y - p.y;
+    const Point2 v = tin.plan(vertex);
+    return ((v.x - p.x) * dx + (v.y - p.y) * dy) / (dx * dx + dy * dy);
+}
+
+double share_of(const Tin& tin, Point2 p, Point2 q, Side side) {
+    return crossing_share(p, q, tin.plan(tin.origin(side)), tin.plan(tin.destination(side)));
 }
 
 }  // namespace
@@ -80,13 +81,11 @@ bool is_before(const Tin& tin, Point2 p, Point2 q, const BoundaryContact& a,
 
 std::vector<BoundaryContact> ways_in(const Tin& tin, Point2 p, Point2 q) {
     std::vector<std::pair<double, BoundaryContact>> found;
-    const auto add = [&](const BoundaryContact& contact) {
-        found.emplace_back(share_of(tin, p, q, contact), contact);
-    };
     const auto add_vertex = [&](VertexId v) {  // from p on, before q
         const Point2 at = tin.plan(v);
         if (at == q || (at != p && !(is_ahead(p, q, at) && is_ahead(q, p, at)))) return;
-        if (leave(tin, v, q, side_from(tin, v)).kind != Departure::Kind::Outside) add({{}, v});
+        if (leave(tin, v, q, side_from(tin, v)).kind != Departure::Kind::Outside)
+            found.emplace_back(share_of(tin, p, q, v), BoundaryContact{{}, v});
     };
     for (const VertexId v : tin.boundary().near(p, q)) {
         if (v.index() >= tin.vertex_count()) continue;
@@ -98,7 +97,7 @@ std::vector<BoundaryContact> ways_in(const Tin& tin, Point2 p, Point2 q) {
         if (of_a != CounterClockwise || orientation(p, q, b) != Clockwise) continue;
         if (orientation(a, b, p) == CounterClockwise) continue;
         if (orientation(a, b, q) != CounterClockwise) continue;
-        add({side, {}});
+        found.emplace_back(share_of(tin, p, q, side), BoundaryContact{side, {}});
     }
     std::sort(found.begin(), found.end(), [](const auto& l, const auto& r) {
         if (l.first != r.first) return l.first < r.first;
