@@ -27,7 +27,8 @@ BoxGrid::BoxGrid(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
     columns_ = static_cast<std::size_t>(
         std::clamp(std::sqrt(static_cast<double>(boxes_.size()) / 2.0), 1.0, 1024.0));
     const auto per_unit = [this](double width) {
-        return width > 0.0 ? static_cast<double>(columns_) / width : 0.0;
+        const double cells = static_cast<double>(columns_) / width;
+        return width > 0.0 && std::isfinite(cells) ? cells : 0.0;
     };
     per_x_ = per_unit(all_.high.x - all_.low.x);
     per_y_ = per_unit(all_.high.y - all_.low.y);
@@ -49,9 +50,12 @@ BoxGrid::BoxGrid(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
         each_cell(boxes_[i], [&](std::size_t cell) { entries_[at[cell]++] = i; });
 }
 
+/// Where boxes reach to infinity, or all are in one place, offsets times cells are no numbers: all
+/// such places are in the first cell, boxes and questions alike.
 std::size_t BoxGrid::cell_of(double offset, double per_unit) const {
-    return static_cast<std::size_t>(
-        std::clamp(offset * per_unit, 0.0, static_cast<double>(columns_ - 1)));
+    const double cell = offset * per_unit;
+    return cell > 0.0 ? static_cast<std::size_t>(std::min(cell, static_cast<double>(columns_ - 1)))
+                      : 0;
 }
 
 BoxGrid::Cells BoxGrid::cells_of(const Box& box) const {

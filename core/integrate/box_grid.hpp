@@ -9,7 +9,7 @@
 
 namespace tinsmith::core {
 
-/// Axis-aligned, in plan; may be a single position.
+/// Axis-aligned, in plan; may be a single position, or reach to infinity.
 struct Box {
     Point2 low;
     Point2 high;
