@@ -21,8 +21,9 @@ bool ShapeIntegration::run(const Shape& shape, std::size_t index, const Ways& wa
     std::size_t points = 0;
     for (const Path& path : shape.paths)
         points += path.points.size();
-    surgery_.expect(points);
-    drift_.expect(points);
+    constexpr std::size_t kMost = 1U << 16;  // what is longer may grow as it comes
+    surgery_.expect(std::min(points, kMost));
+    drift_.expect(std::min(points, kMost));
     for (std::size_t p = 0; p < shape.paths.size(); ++p) {
         if (shape.paths[p].points.empty()) continue;
         const Way& way = ways.of(index, p);
