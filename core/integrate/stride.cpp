@@ -26,7 +26,6 @@ using enum Orientation;
 struct March::Passing {
     Side exit;
     Side across;
-    const Tin::Triangle& behind;
     VertexId a_id, b_id;
     const Tin::Vertex &a, &b, &c, &d;
     AreaEstimate of_a, of_b;  ///< with the input segment: a's is negative, b's positive
@@ -89,7 +88,6 @@ bool March::stride(Side& exit) {
         const double dx = std::fabs(to.x - from.x), dy = std::fabs(to.y - from.y);
         const Passing here{exit,
                            across,
-                           behind,
                            a,
                            b,
                            from,
@@ -229,7 +227,7 @@ bool March::stride(Side& exit) {
     open_entered_ = entered;
     open_other_ = other;
     if (!seam.free.valid()) return;
-    // The split moved the side that begins where it was to the new triangle behind the edge.
+    // The split moved the side after the edge to the new triangle behind it, as side 1.
     const Side next(TriangleId{entered.value - 1}, 1);
     improver_->improve(seam.is_next ? next : seam.free);
 }
