@@ -14,6 +14,11 @@ Response get_welcome(Services&, const Request&, const PathArguments&);
 Response get_health(Services&, const Request&, const PathArguments&);  ///< takes no lock
 Response get_limits(Services&, const Request&, const PathArguments&);
 
+// description_routes.cpp: the interface described, for programs and for people
+Response get_description(Services&, const Request&, const PathArguments&);
+Response get_docs(Services&, const Request&, const PathArguments&);
+Response get_docs_file(Services&, const Request&, const PathArguments&);
+
 // session_routes.cpp
 Response list_sessions(Services&, const Request&, const PathArguments&);
 Response create_session(Services&, const Request&, const PathArguments&);

@@ -61,6 +61,9 @@ std::vector<Route> make_routes(Services& services) {
     return {
         {"GET", "/", {}, to(get_welcome)},
         {"GET", "/healthz", {}, to(get_health)},
+        {"GET", "/openapi.json", {}, to(get_description)},
+        {"GET", "/docs", {}, to(get_docs)},
+        {"GET", "/docs/{file}", {}, to(get_docs_file)},
         {"GET", "/v1/limits", {}, json(get_limits)},
         {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
         {"POST", "/v1/sessions", {}, as_json(change(create_session))},
