@@ -20,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kProblems = "x-problems";
 constexpr const char* kAnswers = "x-answer-headers";
+constexpr const char* kRecorded = "x-recorded";
 constexpr const char* kQuery = "x-query";
 
 /// Of each operation, whatever it is; by their names under components.
@@ -71,10 +72,11 @@ class Operation {
         // Answers come last, whatever was added before.
         Json answers = std::move(operation_["responses"]);
         operation_.erase("responses");
-        for (auto& answer : answers)
-            answer = with_headers(resolved(answer));
         for (const auto& [status, words] : words_)
             answers[std::to_string(status)] = refusal(status, words);
+        for (auto& answer : answers)
+            answer = with_headers(resolved(answer));
+        add_examples(answers);
         operation_["responses"] = std::move(answers);
     }
 
@@ -118,6 +120,21 @@ class Operation {
         return answer;
     }
 
+    /// Shows the answers that were recorded, each at the first media type that is JSON.
+    void add_examples(Json& answers) const {
+        const Json& recorded = document_[kRecorded];
+        const auto id = operation_["operationId"].get<std::string>();
+        if (!recorded.contains(id)) return;
+        for (const auto& [status, named] : recorded[id].items()) {
+            for (auto& [type, media] : answers[status]["content"].items()) {
+                if (type.find("json") == type.npos) continue;
+                for (const auto& [name, value] : named.items())
+                    media["examples"][name] = {{"value", value}};
+                break;
+            }
+        }
+    }
+
     Json refusal(int status, const std::set<ProblemType>& types) const {
         std::string description;
         Json names = Json::array();
@@ -136,7 +153,7 @@ class Operation {
                                 {"status", {{"const", status}}}};
         answer["description"] = description + ".";
         answer["content"][std::string(kProblemMediaType)]["schema"] = std::move(schema);
-        return with_headers(std::move(answer));
+        return answer;
     }
 
     const Json& document_;
@@ -173,7 +190,7 @@ std::string make_document() {
     }
     document["components"]["schemas"]["ProblemType"] = problem_types();
     document["components"].erase("responses");  // each stands where it was named
-    for (const char* name : {kProblems, kAnswers})
+    for (const char* name : {kProblems, kAnswers, kRecorded})
         erase_everywhere(document, name);
     return document.dump() + "\n";
 }

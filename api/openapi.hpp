@@ -15,6 +15,8 @@ namespace tinsmith::api {
 ///   those that any request may meet (problems.json).
 /// - "x-answer-headers" of a parameter are headers of every answer of its operation.
 /// - "x-query" of an operation names a schema: each of its properties is a query parameter.
+/// - "x-recorded" has answers that the program gave, by operation, status and name: they are the
+///   examples of answers (tests/openapi/record.mjs writes them).
 /// - Headers that every request and every answer may have stand at none of them.
 ///
 /// Cost: some milliseconds the first time.

@@ -31,7 +31,9 @@ export function curlLine(origin, path, method, parameters, body, example) {
     encodeURIComponent(value(parameters.find((p) => p.in === 'path' && p.name === name) ?? {}) ?? all));
   const query = parameters.filter((p) => p.in === 'query' && p.required).map((p) => `${p.name}=${value(p)}`).join('&');
   const words = ['curl'];
-  if (method !== 'get') words.push('-X', method.toUpperCase());
+  // A POST has a length, be it that of nothing.
+  if (method === 'post' && !example) words.push('-d', "''");
+  else if (method !== 'get' && method !== 'post') words.push('-X', method.toUpperCase());
   if (body) words.push('-H', `'Content-Type: ${body}'`);
   if (example?.externalValue) words.push('--data-binary', `@${example.externalValue}`);
   else if (example) words.push('-d', `'${JSON.stringify(example.value)}'`);
@@ -107,6 +109,7 @@ class Page {
     const parameters = (operation.parameters ?? []).map((parameter) => this.resolve(parameter));
     const answers = Object.entries(operation.responses).map(([status, answer]) => [status, this.resolve(answer)]);
     const refused = answers.filter(([status]) => Number(status) >= FIRST_REFUSAL);
+    const usual = Object.keys(answers[0][1].headers ?? {});
     return this.make('article', {class: 'card', id: operation.operationId, 'data-words': words(operation)},
       this.make('div', {class: 'target'}, this.method(operation.method),
         this.make('a', {class: 'path', href: `#${operation.operationId}`}, operation.path)),
@@ -117,7 +120,7 @@ class Page {
       refused.length > 0 && this.make('details', {class: 'refusals'},
         this.make('summary', null, `Refusals: ${refused.map(([status]) => status).join(', ')}`),
         this.table(refused.map(([status, answer]) => [
-          this.make('span', {class: 'status refused'}, status), this.refusal(answer)]))));
+          this.make('span', {class: 'status refused'}, status), this.refusal(answer, usual)]))));
   }
 
   parameters(parameters) {
@@ -155,20 +158,25 @@ class Page {
       this.make('p', null, this.make('span', {class: 'status'}, `${status} `), this.inline(answer.description)),
       Object.entries(answer.content ?? {}).map(([type, media]) => [
         this.media(type, media),
-        Object.values(media.examples ?? {}).map((example) => this.make('details', null,
-          this.make('summary', null, `Example: ${example.summary ?? type}`), this.json(example.value)))]),
+        Object.entries(media.examples ?? {}).map(([name, example]) => this.make('details', null,
+          this.make('summary', null, `Example: ${name}`), this.json(example.value)))]),
       headers.length > 0 && this.make('details', null,
         this.make('summary', null, `Headers of the answer: ${headers.join(', ')}`),
         this.table(headers.map((name) => [this.make('code', null, name),
           this.inline(this.resolve(answer.headers[name]).description)])))];
   }
 
-  refusal(answer) {
+  /** `usual` are the headers of the other answers. */
+  refusal(answer, usual) {
+    const headers = Object.keys(answer.headers ?? {}).filter((name) => !usual.includes(name));
     const media = answer.content?.['application/problem+json'];
     const types = media?.schema?.properties?.type?.enum ?? [];
     return [this.make('p', null, this.inline(answer.description)),
       this.make('p', {class: 'soft'}, types.map((type) => [
-        this.make('a', {href: `#problem-${wordOf(type)}`}, this.make('code', null, wordOf(type))), ' ']))];
+        this.make('a', {href: `#problem-${wordOf(type)}`}, this.make('code', null, wordOf(type))), ' ']),
+        headers.length > 0 && `with ${headers.join(', ')}`),
+      Object.entries(media?.examples ?? {}).map(([name, example]) => this.make('details', null,
+        this.make('summary', null, `Example: ${name}`), this.json(example.value)))];
   }
 
   media(type, media) {
