@@ -94,6 +94,10 @@ void add_limits(CLI::App& app, Limits& limits) {
     add("max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
         ->check(digit_first())
         ->check(CLI::PositiveNumber);
+    add("max_points", limits.max_points, "Points of one question for elevations")
+        ->check(digit_first());
+    add("max_profile_crossings", limits.max_profile_crossings, "Edges crossed by one profile")
+        ->check(digit_first());
     add("mesh_cache", limits.mesh_cache, "Bytes of encoded meshes to keep; 0: none")
         ->transform(bytes)
         ->transform(digit_first());

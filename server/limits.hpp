@@ -17,8 +17,10 @@ struct Limits {
     std::size_t max_history_bytes = std::size_t{256} << 20;  ///< that they hold, of one session
     std::uint64_t max_crossings = 50'000'000;                ///< of one request
     double max_edit_seconds = 60.0;                          ///< of one request
-    std::size_t mesh_cache = std::size_t{256} << 20;         ///< bytes of encoded meshes
-    std::size_t kept_answers = std::size_t{64} << 20;        ///< bytes, for retries by key
+    std::size_t max_points = 100'000;                        ///< of one question for elevations
+    std::uint64_t max_profile_crossings = 1'000'000;   ///< of one profile: its answer's points
+    std::size_t mesh_cache = std::size_t{256} << 20;   ///< bytes of encoded meshes
+    std::size_t kept_answers = std::size_t{64} << 20;  ///< bytes, for retries by key
 };
 
 /// Shape of a request before its body is read; see `check_request`.

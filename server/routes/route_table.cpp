@@ -17,6 +17,7 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
+constexpr std::array<std::string_view, 1> kVersion{"version"};
 constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
@@ -50,8 +51,8 @@ std::vector<Route> make_routes(Services& services) {
             return function(services, request, arguments);
         };
     };
-    // For every POST that changes something: a retry with the same Idempotency-Key is not done
-    // again.
+    // For every POST that changes something, and what makes a version: a retry with the same
+    // Idempotency-Key is not done again.
     const auto change = [&services, to](Function function) {
         return keyed(services, to(function));
     };
@@ -72,13 +73,18 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/polygons", kPageParameters, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
+        {"GET", "/v1/sessions/{id}/regions", kPageParameters, json(list_regions)},
+        {"GET", "/v1/sessions/{id}/regions/{pid}", {}, json(get_region)},
+        {"PUT", "/v1/sessions/{id}/locks", kLockParameters, change(put_locks)},
+        {"DELETE", "/v1/sessions/{id}/locks", kLockParameters, change(delete_locks)},
+        {"GET", "/v1/sessions/{id}/locks", kPageParameters, to(get_locks)},
         {"POST", "/v1/sessions/{id}/undo", {}, change(undo_edit)},
         {"POST", "/v1/sessions/{id}/redo", {}, change(redo_edit)},
-        {"GET", "/v1/sessions/{id}/history", {}, json(get_history)},
+        {"GET", "/v1/sessions/{id}/history", kPageParameters, json(get_history)},
         {"GET", "/v1/sessions/{id}/history/{version}", {}, json(get_change)},
         {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
-        {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
         {"POST", "/v1/sessions/{id}/elevation", {}, json(ask_elevations)},
         {"POST", "/v1/sessions/{id}/profile", {}, json(ask_profile)},
