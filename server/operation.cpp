@@ -57,6 +57,7 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polyg
     core::IntegrateOptions options = polygons.options;
     options.cancelled = limits.cancelled;
     options.clock_ms = limits.clock_ms;
+    options.progress = limits.progress;
     options.max_crossings = limits.max_crossings;
     options.max_new_triangles = limits.max_new_triangles;
     const auto kept_report = std::make_shared<core::Report>();

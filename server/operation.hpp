@@ -25,6 +25,7 @@ using OperationPtr = std::shared_ptr<const Operation>;
 struct RunLimits {
     std::function<bool()> cancelled = {};
     std::function<double()> clock_ms = {};
+    std::function<void(double)> progress = {};  ///< told now and then what share is done
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
     /// Refuse an operation that finds nothing of what it is about. One that is run again and no

@@ -2,7 +2,6 @@
 #include "server/questions.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -107,6 +106,7 @@ SurfaceOutcome surface_of(const Session& session, const api::Against& against, c
     }
     RunLimits limits;
     limits.cancelled = cancelled;
+    limits.progress = stage_progress();
     auto tin = session.tin_at(earlier->version, limits);
     if (const auto* gone = std::get_if<VersionGone>(&tin)) return *gone;
     if (const auto* ahead = std::get_if<VersionAhead>(&tin)) return *ahead;
@@ -122,15 +122,6 @@ double left_out(double asked, double compared) {
 }
 
 }  // namespace
-
-std::function<bool()> deadline(const Limits& limits, const std::atomic<bool>& stopping) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const auto most = std::chrono::duration<double>(limits.max_edit_seconds);
-    return [start, most, &stopping] {
-        return stopping.load(std::memory_order_relaxed) || Clock::now() - start > most;
-    };
-}
 
 SpotAnswer spot_in(const Session& session, core::Point2 p) {
     return session.look(
@@ -173,21 +164,25 @@ VolumeOutcome volume_in(const Session& session, const api::VolumeRequest& reques
     Ground ground = copy_ground(session, request.polygon_id);
     VolumeAnswer answer;
     answer.version = ground.version;
+    begin_stage(0.5);
     auto found = part_of(std::move(ground), request,
-                         {limits.max_crossings, limits.max_triangles, cancelled});
+                         {limits.max_crossings, limits.max_triangles, cancelled, stage_progress()});
     if (auto* errors = std::get_if<core::Errors>(&found)) return std::move(*errors);
     if (const auto* fault = std::get_if<PolygonFault>(&found)) return *fault;
     const Part& part = std::get<Part>(found);
     if (const auto* plane = std::get_if<core::Plane>(&request.against)) {
         answer.volume = core::volume_against(part.tin, part.triangles, *plane);
     } else {
+        begin_stage(0.2);
         auto theirs = surface_of(session, request.against, other, cancelled);
         if (const auto* gone = std::get_if<VersionGone>(&theirs)) return *gone;
         if (const auto* ahead = std::get_if<VersionAhead>(&theirs)) return *ahead;
         if (auto* errors = std::get_if<core::Errors>(&theirs)) return std::move(*errors);
         const Surface& surface = std::get<Surface>(theirs);
         answer.other_version = surface.version;
-        auto volume = core::volume_between(part.tin, part.triangles, surface.tin, cancelled);
+        begin_stage(1.0);
+        auto volume = core::volume_between(part.tin, part.triangles, surface.tin, cancelled,
+                                           stage_progress());
         if (!volume) return std::move(volume.errors());
         answer.volume = *volume;
     }

@@ -17,6 +17,7 @@
 #include "core/types/result.hpp"
 #include "server/limits.hpp"
 #include "server/session.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -50,10 +51,6 @@ enum class PolygonFault { NotThere, NoInside };
 using ProfileOutcome = std::variant<ProfileAnswer, core::Errors>;
 using VolumeOutcome =
     std::variant<VolumeAnswer, core::Errors, PolygonFault, VersionGone, VersionAhead>;
-
-/// True from the time on that the limits allow for one request, or when the service stops.
-/// Requires: `stopping` outlives it.
-std::function<bool()> deadline(const Limits& limits, const std::atomic<bool>& stopping);
 
 // Each holds a session's readers' lock while it looks at the mesh, or copies it for longer work;
 // never two at the same time.

@@ -24,8 +24,13 @@ std::vector<std::string> new_ids(std::uint64_t first, std::size_t count) {
 RunLimits limits_of(const PolygonEdit& edit, const core::Tin& tin) {
     const std::size_t room =
         edit.max_triangles - std::min(edit.max_triangles, tin.triangle_count());
-    return {edit.options.cancelled, edit.options.clock_ms, edit.options.max_crossings,
-            std::min<std::uint64_t>(edit.options.max_new_triangles, room)};
+    RunLimits limits;
+    limits.cancelled = edit.options.cancelled;
+    limits.clock_ms = edit.options.clock_ms;
+    limits.progress = edit.options.progress;
+    limits.max_crossings = edit.options.max_crossings;
+    limits.max_new_triangles = std::min<std::uint64_t>(edit.options.max_new_triangles, room);
+    return limits;
 }
 
 /// The edit as it is kept. Its budgets stay behind.
@@ -34,6 +39,7 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
     const core::IntegrateOptions free;
     options.cancelled = nullptr;
     options.clock_ms = nullptr;
+    options.progress = nullptr;
     options.max_crossings = free.max_crossings;
     options.max_new_triangles = free.max_new_triangles;
     return std::make_shared<const Operation>(

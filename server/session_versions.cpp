@@ -17,8 +17,9 @@ VersionOutcome Session::tin_at(std::uint64_t wanted, const RunLimits& limits) co
     const auto& [taken, again] = std::get<WayBack>(way);
     for (auto applied = taken.rbegin(); applied != taken.rend(); ++applied)
         core::take_back(tin, (*applied)->undo);
-    for (const Rerun& rerun : again) {
-        auto applied = run(tin, rerun.version, rerun.operation, limits);
+    for (std::size_t i = 0; i < again.size(); ++i) {
+        auto applied =
+            run(tin, again[i].version, again[i].operation, limits_of_part(limits, i, again.size()));
         if (!applied) return std::move(applied.errors());
     }
     return tin;

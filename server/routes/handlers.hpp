@@ -47,6 +47,12 @@ Response get_locks(Services&, const Request&, const PathArguments&);
 Response list_regions(Services&, const Request&, const PathArguments&);
 Response get_region(Services&, const Request&, const PathArguments&);
 
+// job_routes.cpp
+Response list_jobs(Services&, const Request&, const PathArguments&);
+Response get_job(Services&, const Request&, const PathArguments&);
+Response get_job_result(Services&, const Request&, const PathArguments&);
+Response delete_job(Services&, const Request&, const PathArguments&);
+
 // delta_routes.cpp
 Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?since=
 

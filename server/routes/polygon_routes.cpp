@@ -11,6 +11,7 @@
 #include "server/routes/handlers.hpp"
 #include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -80,6 +81,7 @@ Response integrate_polygons(Services& services, const Request& request,
     const auto expected = require_if_match(request, session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
 
+    begin_stage(0.1);
     auto work = read_polygon_work(request.body, options_of_query(request), services.read_limits());
     if (!work) {
         return refuse(request, api::problem_of_faults(work.kind(), std::move(work.faults())));
@@ -93,6 +95,7 @@ Response integrate_polygons(Services& services, const Request& request,
     work->edit.want_mesh = as_glb;
     work->edit.want_delta = as_delta;
     work->edit.expected_version = std::get<0>(expected);
+    begin_stage(0.8);
     set_budgets(work->edit, services.limits, services.stopping);
     const bool dry_run = work->edit.dry_run;
     if (dry_run && as_delta) {
@@ -116,6 +119,7 @@ Response integrate_polygons(Services& services, const Request& request,
         return refuse(request, api::ProblemType::NoSuchSession,
                       "The session was deleted while the edit ran: nothing of it is kept.");
     }
+    begin_stage(1.0);
     const auto& result = std::get<PolygonResult>(outcome);
     Response response = as_glb     ? send_mesh_after(request, session, result, dry_run)
                         : as_delta ? delta_response(request, session, result.version, result.delta)

@@ -183,6 +183,7 @@ Response ask_volume(Services& services, const Request& request, const PathArgume
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "a question")) return *refusal;
     if (auto refusal = refusal_of_memory(services, request)) return *refusal;
+    begin_stage(0.1);
     auto asked = api::read_volume_request(request.body, services.read_limits());
     if (!asked) return refuse_faults(request, asked.kind(), std::move(asked.faults()));
     const auto other = require_other(services, request, session, *asked);

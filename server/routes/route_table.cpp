@@ -10,6 +10,7 @@
 #include "server/routes/handlers.hpp"
 #include "server/routes/idempotency.hpp"
 #include "server/routes/paging.hpp"
+#include "server/routes/respond_async.hpp"
 #include "server/routes/route_support.hpp"
 
 namespace tinsmith::server {
@@ -52,9 +53,12 @@ std::vector<Route> make_routes(Services& services) {
         };
     };
     // For every POST that changes something, and what makes a version: a retry with the same
-    // Idempotency-Key is not done again.
+    // Idempotency-Key is not done again, and who prefers so gets a job at once.
     const auto change = [&services, to](Function function) {
-        return keyed(services, to(function));
+        return keyed(services, deferrable(services, to(function)));
+    };
+    const auto question = [&services, to](Function function) {
+        return as_json(deferrable(services, to(function)));
     };
     const auto json = [to](Function function) { return as_json(to(function)); };
     const auto mesh = api::mesh_option_names();
@@ -63,10 +67,14 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/", {}, to(get_welcome)},
         {"GET", "/healthz", {}, to(get_health)},
         {"GET", "/v1/limits", {}, json(get_limits)},
+        {"GET", "/v1/jobs", kPageParameters, json(list_jobs)},
+        {"GET", "/v1/jobs/{id}", {}, json(get_job)},
+        {"DELETE", "/v1/jobs/{id}", {}, json(delete_job)},
+        {"GET", "/v1/jobs/{id}/result", {}, to(get_job_result)},
         {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
         {"POST", "/v1/sessions", {}, as_json(change(create_session))},
         {"GET", "/v1/sessions/{id}", {}, json(get_session)},
-        {"PUT", "/v1/sessions/{id}", {}, json(put_session)},
+        {"PUT", "/v1/sessions/{id}", {}, question(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
         {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},
@@ -86,9 +94,9 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
-        {"POST", "/v1/sessions/{id}/elevation", {}, json(ask_elevations)},
-        {"POST", "/v1/sessions/{id}/profile", {}, json(ask_profile)},
-        {"POST", "/v1/sessions/{id}/volume", {}, json(ask_volume)},
+        {"POST", "/v1/sessions/{id}/elevation", {}, question(ask_elevations)},
+        {"POST", "/v1/sessions/{id}/profile", {}, question(ask_profile)},
+        {"POST", "/v1/sessions/{id}/volume", {}, question(ask_volume)},
     };
 }
 
