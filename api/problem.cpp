@@ -61,7 +61,10 @@ constexpr std::array kTable{
     Row{VersionGone, "version-gone", "The version is no longer kept", 410},
     Row{TooManySessions, "too-many-sessions", "No room for another session", 429},
     Row{OutOfMemory, "out-of-memory", "Not enough memory", 507},
+    Row{NoSuchJob, "no-such-job", "There is no such job", 404},
+    Row{JobUnfinished, "job-unfinished", "The job has not ended yet", 409},
     Row{Stopped, "stopped", "The work was stopped", 503},
+    Row{TooManyJobs, "too-many-jobs", "No room for another job", 503},
     Row{Internal, "internal", "The server failed", 500},
 };
 
@@ -161,6 +164,9 @@ Problem problem_of_faults(FaultKind kind, Faults faults) {
             break;
         case FaultKind::Parameter:
             type = InvalidParameter;
+            break;
+        case FaultKind::Stopped:
+            type = Stopped;
             break;
     }
     return {type, summary_of(faults), std::move(faults)};

@@ -50,7 +50,10 @@ enum class ProblemType {
     VersionGone,     ///< no longer kept
     TooManySessions,
     OutOfMemory,
-    Stopped,  ///< the work was cancelled: time limit or shutdown
+    NoSuchJob,
+    JobUnfinished,  ///< its result is asked for
+    Stopped,        ///< the work was cancelled: time limit, shutdown, or its job was deleted
+    TooManyJobs,
     Internal,
 };
 

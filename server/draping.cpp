@@ -15,10 +15,6 @@ api::DrapedLine drape_chain(const core::Tin& tin, const core::ConstraintHistory&
     return line;
 }
 
-bool is_polygonal(api::GeometryType type) {
-    return type == api::GeometryType::Polygon || type == api::GeometryType::MultiPolygon;
-}
-
 }  // namespace
 
 api::DrapedPolygon drape(const core::Tin& tin, const core::ConstraintHistory& history,
@@ -35,7 +31,7 @@ api::DrapedPolygon drape(const core::Tin& tin, const core::ConstraintHistory& hi
     for (const core::Chain& chain : report.chains) {
         if (!chain.vertices.empty()) draped.lines.push_back(drape_chain(tin, history, chain));
     }
-    if (is_polygonal(polygon.origin().type)) {
+    if (polygon.has_inside()) {
         const core::Region region =
             core::find_region(tin, history, {polygon.outline(), report.chains, report.outside},
                               polygon.request.winding);

@@ -11,21 +11,26 @@
 
 #include "core/integrate/integrator.hpp"
 #include "server/delta.hpp"
+#include "server/locks.hpp"
 #include "server/polygon.hpp"
 
 namespace tinsmith::server {
 
 /// What a session was told to do, whole enough to be done again. Each kind is one alternative; the
 /// functions below say what a kind has to know of itself.
-using Operation = std::variant<PolygonsOperation>;
+using Operation = std::variant<PolygonsOperation, LocksOperation>;
 using OperationPtr = std::shared_ptr<const Operation>;
 
 /// What one run of an operation may cost. Never kept with the operation.
 struct RunLimits {
     std::function<bool()> cancelled = {};
     std::function<double()> clock_ms = {};
+    std::function<void(double)> progress = {};  ///< told now and then what share is done
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
+    /// Refuse an operation that finds nothing of what it is about. One that is run again and no
+    /// longer finds it does nothing, as the refused one would have done.
+    bool must_find = false;
 };
 
 /// An operation that the mesh holds, with all that takes it back bit for bit. Never changed once
@@ -33,7 +38,8 @@ struct RunLimits {
 struct Applied {
     std::uint64_t version = 0;  ///< of the session when it was first done
     OperationPtr operation;
-    std::shared_ptr<const core::Report> report;
+    std::shared_ptr<const core::Report> report;  ///< of no shape for kinds that bring none
+    std::shared_ptr<const LocksDone> locks;      ///< of a locks request, else null
     core::Undo undo;
     std::shared_ptr<const SlotChanges> written;
     std::size_t lasting_bytes = 0;  ///< about what operation and report hold in memory

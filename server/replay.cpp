@@ -16,8 +16,10 @@ void take_back_all(core::Tin& tin, std::span<const AppliedPtr> taken) {
 Replayed run_all(core::Tin& tin, std::span<const Rerun> wanted, const RunLimits& limits) {
     std::vector<AppliedPtr> done;
     done.reserve(wanted.size());
-    for (const Rerun& rerun : wanted) {
-        auto applied = run(tin, rerun.version, rerun.operation, limits);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const Rerun& rerun = wanted[i];
+        auto applied =
+            run(tin, rerun.version, rerun.operation, limits_of_part(limits, i, wanted.size()));
         if (!applied) return ReplayFailure{rerun.version, std::move(applied.errors())};
         done.push_back(std::move(*applied));
     }
@@ -25,6 +27,16 @@ Replayed run_all(core::Tin& tin, std::span<const Rerun> wanted, const RunLimits&
 }
 
 }  // namespace
+
+RunLimits limits_of_part(const RunLimits& limits, std::size_t index, std::size_t count) {
+    RunLimits part = limits;
+    if (limits.progress) {
+        part.progress = [tell = limits.progress, index, count](double share) {
+            tell((static_cast<double>(index) + share) / static_cast<double>(count));
+        };
+    }
+    return part;
+}
 
 Replayed replace_newest(core::Tin& tin, std::span<const AppliedPtr> taken,
                         std::span<const Rerun> wanted, const RunLimits& limits) {

@@ -17,6 +17,10 @@ struct ReplayFailure {
     core::Errors errors;
 };
 
+/// The limits of one of several operations that are run after another: its progress is a part of
+/// theirs.
+RunLimits limits_of_part(const RunLimits& limits, std::size_t index, std::size_t count);
+
 using Replayed = std::variant<std::vector<AppliedPtr>, ReplayFailure>;
 
 /// Takes the newest operations back and runs others in their place. A failure, or an exception,

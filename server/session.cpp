@@ -24,8 +24,13 @@ std::vector<std::string> new_ids(std::uint64_t first, std::size_t count) {
 RunLimits limits_of(const PolygonEdit& edit, const core::Tin& tin) {
     const std::size_t room =
         edit.max_triangles - std::min(edit.max_triangles, tin.triangle_count());
-    return {edit.options.cancelled, edit.options.clock_ms, edit.options.max_crossings,
-            std::min<std::uint64_t>(edit.options.max_new_triangles, room)};
+    RunLimits limits;
+    limits.cancelled = edit.options.cancelled;
+    limits.clock_ms = edit.options.clock_ms;
+    limits.progress = edit.options.progress;
+    limits.max_crossings = edit.options.max_crossings;
+    limits.max_new_triangles = std::min<std::uint64_t>(edit.options.max_new_triangles, room);
+    return limits;
 }
 
 /// The edit as it is kept. Its budgets stay behind.
@@ -34,6 +39,7 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
     const core::IntegrateOptions free;
     options.cancelled = nullptr;
     options.clock_ms = nullptr;
+    options.progress = nullptr;
     options.max_crossings = free.max_crossings;
     options.max_new_triangles = free.max_new_triangles;
     return std::make_shared<const Operation>(
@@ -96,6 +102,11 @@ core::Tin Session::copy_tin() const {
     return tin_;
 }
 
+std::size_t Session::mesh_bytes() const {
+    const std::lock_guard lock(view_mutex_);
+    return mesh_bytes_;
+}
+
 DrapedCopy Session::draped(std::optional<std::string_view> id) const {
     const auto lock = lock_to_read();
     DrapedCopy copy{{}, version()};
@@ -129,7 +140,8 @@ void Session::refresh_view() noexcept {
     view_.triangles = tin_.triangle_count();
     view_.bounds = tin_.bounds();
     view_.polygons = history_.polygon_count();
-    view_.memory_bytes = tin_.memory_bytes() + history_.memory_bytes();
+    mesh_bytes_ = tin_.memory_bytes();
+    view_.memory_bytes = mesh_bytes_ + history_.memory_bytes();
 }
 
 PolygonOutcome Session::integrate(PolygonEdit edit) {
@@ -143,33 +155,45 @@ PolygonOutcome Session::integrate(PolygonEdit edit) {
     result.version = before + 1;
     result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
     const OperationPtr operation = operation_of(edit, result.polygon_ids);
-    Edit step;
-    step.version = result.version;
-    step.first = history_.base() + history_.applied().size();
-    step.added.push_back({result.version, operation});
-    step.polygons = result.polygon_ids;
-    std::vector<AppliedPtr> done(1);
-    Change change;
-    change.version = result.version;
-    change.kind = ChangeKind::Polygons;
-    change.polygons = result.polygon_ids;
-    change.written.resize(1);
-    history_.prepare(1);
-    auto applied = run(tin_, result.version, operation, limits);
+    auto applied = append(ChangeKind::Polygons, operation, limits);
     if (!applied) return std::move(applied.errors());
     result.report = (*applied)->report;
-    change.report = (*applied)->report;
+    if (edit.want_mesh) result.mesh = copy_if_possible(tin_);
+    if (edit.want_delta) result.delta = delta_if_possible(before);
+    return result;
+}
+
+/// Runs one operation more and keeps it as the next version. An error leaves everything as it was.
+/// Requires: the writer's lock.
+core::Result<AppliedPtr> Session::append(ChangeKind kind, const OperationPtr& operation,
+                                         const RunLimits& limits) {
+    // Memory first: once the mesh has changed, nothing may fail before it is on record.
+    Edit step;
+    step.version = version() + 1;
+    step.first = history_.base() + history_.applied().size();
+    step.added.push_back({step.version, operation});
+    step.polygons = polygon_ids(*operation);
+    std::vector<AppliedPtr> done(1);
+    Change change;
+    change.version = step.version;
+    change.kind = kind;
+    change.polygons = step.polygons;
+    change.step = Exchange{step.first, {}, step.added};
+    change.written.resize(1);
+    history_.prepare(1);
+    auto applied = run(tin_, step.version, operation, limits);
+    if (!applied) return applied;
+    if (kind == ChangeKind::Polygons) change.report = (*applied)->report;
+    change.locks = (*applied)->locks;
     change.vertices = tin_.vertex_count();
     change.triangles = tin_.triangle_count();
     change.written[0] = (*applied)->written;
     step.added_bytes = (*applied)->lasting_bytes;
-    done[0] = std::move(*applied);
+    done[0] = *applied;
     history_.make(std::move(step), std::move(done), std::move(change));
-    next_polygon_ += result.polygon_ids.size();
+    next_polygon_ += polygon_ids(*operation).size();
     refresh_view();
-    if (edit.want_mesh) result.mesh = copy_if_possible(tin_);
-    if (edit.want_delta) result.delta = delta_if_possible(before);
-    return result;
+    return applied;
 }
 
 PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {

@@ -6,6 +6,7 @@
 #include "api/formats/geotiff.hpp"
 #include "api/formats/terrain_json.hpp"
 #include "core/mesh/build.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -39,10 +40,13 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
 
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::ReadLimits& limits) {
+    begin_stage(0.4);
     auto terrain = format == TerrainFormat::GeoTiff ? api::read_geotiff(bytes, limits)
                                                     : api::read_terrain_json(bytes, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
+    begin_stage(0.6);
     auto tin = core::build_tin(terrain->mesh);
+    if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
     if (!tin) {
         api::Faults faults;
         auto kind = api::FaultKind::Invalid;

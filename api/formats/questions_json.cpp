@@ -92,19 +92,22 @@ class Number : public Value {
     double number_ = 0.0;
 };
 
-/// "version" is in the contract and not yet in the program.
-class NotYet : public Value {
+/// A whole number from 1 on.
+class Version : public Value {
   public:
-    void scalar(Reader& reader, const Scalar&) override {
-        reader.add(FaultKind::Unsupported,
-                   {"NOT_AVAILABLE",
-                    "Earlier versions are not kept by this version of the program: fork the "
-                    "session before an edit and compare with the fork.",
-                    reader.pointer()});
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (value.kind != Scalar::Kind::Natural || value.natural == 0) {
+            return Value::scalar(reader, value);
+        }
+        version_ = value.natural;
     }
+    std::uint64_t version() const { return version_; }
 
   protected:
-    std::string_view expected() const override { return "a version"; }
+    std::string_view expected() const override { return "a version, a whole number from 1 on"; }
+
+  private:
+    std::uint64_t version_ = 0;
 };
 
 class AgainstObject : public Object {
@@ -130,7 +133,8 @@ class AgainstObject : public Object {
         if (given != 1) {
             reader.fault(given == 0 ? "MEMBER_MISSING" : "CONTRADICTION",
                          "Give one thing to compare with: \"elevation\", or \"plane\" of three "
-                         "points, or \"slope\", \"azimuth\" and \"point\", or \"session\".");
+                         "points, or \"slope\", \"azimuth\" and \"point\", or \"session\", or "
+                         "\"version\".");
         }
         for (const std::string_view name : {"slope", "azimuth", "point"}) {
             if (sloping && !has(name)) {
@@ -147,6 +151,8 @@ class AgainstObject : public Object {
     void take(Reader& reader) {
         if (has("session")) {
             out_ = OtherSession{session_text_};
+        } else if (has("version")) {
+            out_ = EarlierVersion{version_.version()};
         } else if (has("elevation")) {
             out_ = core::level_plane(elevation_.number());
         } else if (has("plane")) {
@@ -186,7 +192,7 @@ class AgainstObject : public Object {
     TupleList<3> plane_{"a point [x, y, z]", "an array of three points [x, y, z]", 3};
     Tuple point_{3, Tuple::Items::Coordinate, "a point [x, y, z]"};
     json::Text session_{session_text_};
-    NotYet version_;
+    Version version_;
 };
 
 /// A GeoJSON geometry with an inside.

@@ -38,6 +38,7 @@ Result<Region> cut_in(Tin& tin, const Shape& shape, Winding winding, const Cutou
     options.max_crossings = limits.max_crossings;
     options.max_new_triangles = limits.max_new_triangles;
     options.cancelled = limits.cancelled;
+    options.progress = limits.progress;
     auto report = integrate(tin, {&shape, 1}, options);
     ShapeReport found;
     if (report) {

@@ -11,6 +11,7 @@
 #include "core/integrate/drift.hpp"
 #include "core/integrate/improve.hpp"
 #include "core/integrate/options.hpp"
+#include "core/integrate/progress.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
 #include "core/integrate/way.hpp"
@@ -44,6 +45,7 @@ struct MarchLimits {
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
     const std::function<bool()>* cancelled = nullptr;
+    Progress* progress = nullptr;
 };
 
 /// Walks paths through a mesh and leaves each of their segments behind as a chain of constrained

@@ -74,6 +74,7 @@ bool ShapeIntegration::run(std::size_t index, const Path& path, const Way& way) 
             return false;
         }
         last = next;
+        progress_.end_segment();
         improve(kImproveBatch);
     }
     const bool done = march_.finish();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "server/http_message.hpp"
 #include "server/router.hpp"
 #include "server/services.hpp"
@@ -38,6 +41,22 @@ Response undo_edit(Services&, const Request&, const PathArguments&);
 Response redo_edit(Services&, const Request&, const PathArguments&);
 Response get_history(Services&, const Request&, const PathArguments&);
 Response get_change(Services&, const Request&, const PathArguments&);
+
+// lock_routes.cpp
+inline constexpr std::array<std::string_view, 3> kLockParameters{"snap", "crs", "dry_run"};
+Response put_locks(Services&, const Request&, const PathArguments&);
+Response delete_locks(Services&, const Request&, const PathArguments&);
+Response get_locks(Services&, const Request&, const PathArguments&);
+
+// region_routes.cpp
+Response list_regions(Services&, const Request&, const PathArguments&);
+Response get_region(Services&, const Request&, const PathArguments&);
+
+// job_routes.cpp
+Response list_jobs(Services&, const Request&, const PathArguments&);
+Response get_job(Services&, const Request&, const PathArguments&);
+Response get_job_result(Services&, const Request&, const PathArguments&);
+Response delete_job(Services&, const Request&, const PathArguments&);
 
 // delta_routes.cpp
 Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?since=

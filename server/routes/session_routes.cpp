@@ -138,6 +138,10 @@ Response delete_session(Services& services, const Request& request,
     auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     auto& session = std::get<0>(found);
+    if (!request.body.empty()) {
+        return refuse(request, api::ProblemType::BadRequest,
+                      "There is no body here: leave it out.");
+    }
     if (auto refusal = refusal_of_blind_edit(services, request, *session)) return *refusal;
     const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
