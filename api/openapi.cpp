@@ -19,7 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kProblems = "x-problems";
-constexpr const char* kAnswers = "x-answer-headers";
+constexpr const char* kAnswers = "x-answers";
+constexpr const char* kAnswerHeaders = "x-answer-headers";
 constexpr const char* kRecorded = "x-recorded";
 constexpr const char* kQuery = "x-query";
 
@@ -54,7 +55,7 @@ class Operation {
     Operation(const Json& document, const std::string& method, Json& operation)
         : document_(document), operation_(operation) {
         add_words(document_[kProblems]["any"]);
-        if (method == "post" || method == "put") add_words(document_[kProblems]["with_body"]);
+        if (method != "get") add_words(document_[kProblems]["with_body"]);
     }
 
     void complete() {
@@ -62,7 +63,8 @@ class Operation {
         for (const Json& parameter : operation_["parameters"]) {
             const Json& named = resolved(parameter);
             add_words_of(named);
-            if (named.contains(kAnswers)) answer_headers_.update(named[kAnswers]);
+            if (named.contains(kAnswerHeaders)) answer_headers_.update(named[kAnswerHeaders]);
+            if (named.contains(kAnswers)) operation_["responses"].update(named[kAnswers]);
         }
         if (operation_.contains("requestBody")) add_words_of(resolved(operation_["requestBody"]));
         add_words_of(operation_);
@@ -94,8 +96,8 @@ class Operation {
         const Json& properties = document_["components"]["schemas"][schema]["properties"];
         for (const auto& [name, property] : properties.items()) {
             Json parameter{{"name", name}, {"in", "query"}};
-            if (property.contains("description"))
-                parameter["description"] = property["description"];
+            if (resolved(property).contains("description"))
+                parameter["description"] = resolved(property)["description"];
             parameter["schema"] = reference("schemas/" + schema + "/properties/" + name);
             operation_["parameters"].push_back(std::move(parameter));
         }
@@ -190,7 +192,7 @@ std::string make_document() {
     }
     document["components"]["schemas"]["ProblemType"] = problem_types();
     document["components"].erase("responses");  // each stands where it was named
-    for (const char* name : {kProblems, kAnswers, kRecorded})
+    for (const char* name : {kProblems, kAnswers, kAnswerHeaders, kRecorded})
         erase_everywhere(document, name);
     return document.dump() + "\n";
 }

@@ -13,7 +13,9 @@ namespace tinsmith::api {
 /// - "x-problems" of an operation, of its body and of each of its parameters name problems by their
 ///   words. They become the answers of their statuses, from the table of problems, together with
 ///   those that any request may meet (problems.json).
-/// - "x-answer-headers" of a parameter are headers of every answer of its operation.
+/// - "x-answers" of a parameter are answers of its operation, "x-answer-headers" are headers of
+/// every
+///   answer of it.
 /// - "x-query" of an operation names a schema: each of its properties is a query parameter.
 /// - "x-recorded" has answers that the program gave, by operation, status and name: they are the
 ///   examples of answers (tests/openapi/record.mjs writes them).

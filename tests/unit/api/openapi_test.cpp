@@ -96,6 +96,8 @@ void expect_options(const std::string& schema_name, std::span<const std::string_
             EXPECT_FALSE(takes(name, "1")) << name << " is there by now: describe it";
             continue;
         }
+        // Read before the parser gets to see the rest.
+        if (schema.contains("x-of-the-route")) continue;
         const bool is_number = schema.contains("type") && schema["type"] == "number";
         const bool is_text = schema.contains("type") && schema["type"] == "string";
         if (!is_number && !is_text) {

@@ -140,8 +140,6 @@ TEST_F(OpenApi, HasExactlyTheHeadersThatAreRead) {
         wanted.erase(name);
     // Passed on by pages' libraries, and not read.
     wanted.erase("tracestate");
-    // Not yet: there are no jobs.
-    wanted.erase("prefer");
     EXPECT_EQ(differences(wanted, described), "");
 }
 
