@@ -26,7 +26,7 @@ constexpr const char* kQuery = "x-query";
 
 /// Of each operation, whatever it is; by their names under components.
 constexpr std::array<const char*, 3> kRequestHeaders{"AcceptEncoding", "RequestId", "TraceParent"};
-const std::array<std::pair<const char*, const char*>, 4> kAnswerHeaders{{
+const std::array<std::pair<const char*, const char*>, 4> kGeneralHeaders{{
     {"X-Request-Id", "RequestId"},
     {"traceparent", "TraceParent"},
     {"Vary", "Vary"},
@@ -115,7 +115,7 @@ class Operation {
     }
 
     Json with_headers(Json answer) const {
-        for (const auto& [header, component] : kAnswerHeaders)
+        for (const auto& [header, component] : kGeneralHeaders)
             answer["headers"][header] = reference(std::string("headers/") + component);
         for (const auto& [header, component] : answer_headers_.items())
             answer["headers"][header] = reference("headers/" + component.get<std::string>());

@@ -24,19 +24,21 @@ export function filter(dom, text) {
   }
 }
 
-/** A curl line for one request; `example` is that of a body, if any. */
-export function curlLine(origin, path, method, parameters, body, example) {
+/** A curl line for one request; `content` is an example of its body. */
+export function curlLine(origin, path, method, parameters, body, content) {
   const value = (p) => p.example ?? p.schema?.examples?.[0];
-  const filled = path.replace(/\{(\w+)\}/g, (all, name) =>
-    encodeURIComponent(value(parameters.find((p) => p.in === 'path' && p.name === name) ?? {}) ?? all));
+  const filled = path.replace(/\{(\w+)\}/g, (all, name) => {
+    const example = value(parameters.find((p) => p.in === 'path' && p.name === name) ?? {});
+    return example === undefined ? all : encodeURIComponent(example);
+  });
   const query = parameters.filter((p) => p.in === 'query' && p.required).map((p) => `${p.name}=${value(p)}`).join('&');
   const words = ['curl'];
   // A POST has a length, be it that of nothing.
-  if (method === 'post' && !example) words.push('-d', "''");
+  if (method === 'post' && !content) words.push('-d', "''");
   else if (method !== 'get' && method !== 'post') words.push('-X', method.toUpperCase());
   if (body) words.push('-H', `'Content-Type: ${body}'`);
-  if (example?.externalValue) words.push('--data-binary', `@${example.externalValue}`);
-  else if (example) words.push('-d', `'${JSON.stringify(example.value)}'`);
+  if (content?.externalValue) words.push('--data-binary', `@${content.externalValue}`);
+  else if (content) words.push('-d', `'${JSON.stringify(content.value)}'`);
   words.push(`'${origin}${filled}${query && '?' + query}'`);
   return words.join(' ');
 }

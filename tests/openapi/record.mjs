@@ -42,7 +42,7 @@ for (const {id, values, type, name, body, operation} of exampleCases(description
   const answer = await client.send(id, {values, body, headers: operation.responses['406'] ? {Accept: type} : {}});
   const isShown = answer.json !== undefined && answer.bytes.length <= LONGEST && id !== 'getDescription';
   // The same answer by another name of its type is not shown twice.
-  const isFirst = Object.keys(operation.responses[answer.status].content ?? {}).find((one) => one.includes('json')) === answer.type;
+  const isFirst = Object.keys(operation.responses[answer.status]?.content ?? {}).find((one) => one.includes('json')) === answer.type;
   if (isShown && isFirst) put(answers, answer, name);
 }
 write('answers.json', answers);

@@ -4,6 +4,7 @@
 
 import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
+import {setTimeout} from 'node:timers/promises';
 import {project} from '../support/program.mjs';
 
 /** What a case needs to have been done before, by operation; others: a session with one polygon. */
@@ -12,14 +13,18 @@ const BEFORE = {
   putSession: [],
   integratePolygons: ['putSession'],
   redo: ['putSession', 'integratePolygons', 'undo'],
+  getLocks: ['putSession', 'integratePolygons', 'putLocks'],
 };
 const USUAL = ['putSession', 'integratePolygons'];
+const ABOUT_A_JOB = ['getJob', 'getJobResult', 'deleteJob', 'listJobs'];
 
 /** What the examples of parameters do not say: [operation, query or path, media type that comes]. */
 const MORE = [
   ['getMesh', {since: 1}, 'application/json'],
   ['getMesh', {since: 1}, 'application/vnd.tinsmith.delta'],
   ['getChange', {version: 1}, 'application/json'],
+  ['getMesh', {version: 1}, 'model/gltf-binary'],
+  ['getMeshJson', {version: 1}, 'application/json'],
   ['getDocsFile', {file: 'page.mjs'}, 'text/javascript; charset=utf-8'],
   ['getDocsFile', {file: 'page.css'}, 'text/css; charset=utf-8'],
 ];
@@ -33,13 +38,14 @@ export class Client {
   /** Sends one operation. `values` are of path and query, over the examples of the parameters. */
   async send(id, {values = {}, headers = {}, body = {}, raw} = {}) {
     const operation = this.description.operation(id);
+    if (ABOUT_A_JOB.includes(id)) values = {...this.job, ...values};
     const value = (parameter) => values[parameter.name] ?? parameter.example;
     const path = this.description.parameters(operation, 'path').reduce(
       (filled, p) => filled.replace(`{${p.name}}`, encodeURIComponent(value(p))), operation.path);
     const query = new URLSearchParams();
     for (const p of this.description.parameters(operation, 'query'))
       if (p.required || p.name in values) query.set(p.name, value(p));
-    for (const name of Object.keys(values))
+    for (const name of Object.keys(values).filter((name) => !(name in (this.job ?? {}))))
       if (!operation.parameters.some((p) => this.description.resolve(p).name === name)) query.set(name, values[name]);
     if (body.type) headers = {'Content-Type': body.type, ...headers};
     const response = await fetch(`${this.origin}${path}${query.size > 0 ? `?${query}` : ''}`, {
@@ -55,6 +61,20 @@ export class Client {
     for (const session of ['square', 'other']) await fetch(`${this.origin}/v1/sessions/${session}`, {method: 'DELETE'});
     for (const step of BEFORE[id] ?? USUAL) await this.example(step);
     if (id === 'askVolume') await this.example('putSession', {id: 'other'});
+    if (!ABOUT_A_JOB.includes(id)) return;
+    const body = this.description.bodies(this.description.operation('askElevations'))[0];
+    const accepted = await this.send('askElevations', {body, headers: {Prefer: 'respond-async'}});
+    await this.end(accepted);
+    this.job = {id: accepted.json.id};
+  }
+
+  /** Waits for a job's end; what it was then. */
+  async end(accepted) {
+    for (;;) {
+      const job = await (await fetch(this.origin + accepted.headers.get('location'))).json();
+      if (!['queued', 'running'].includes(job.state)) return job;
+      await setTimeout(5);
+    }
   }
 
   /** The first example of an operation. */
@@ -66,8 +86,9 @@ export class Client {
 /** Every request that the description has an example of, by each media type that it may come back as. */
 export function exampleCases(description) {
   return description.operations.flatMap((operation) => {
-    const [status] = Object.keys(operation.responses);
-    const types = Object.keys(operation.responses[status].content ?? {});
+    const status = successOf(operation);
+    // Of a job's result no more is described than that it is the answer of its request.
+    const types = Object.keys(operation.responses[status]?.content ?? {'application/json': {}});
     const own = MORE.filter(([id]) => id === operation.operationId)
       .map(([id, values, type]) => ({id, values, type, name: Object.entries(values)[0].join('_'), body: {}}));
     const plain = description.bodies(operation).flatMap((body) => types
@@ -77,6 +98,7 @@ export function exampleCases(description) {
   });
 }
 
+export const successOf = (operation) => Object.keys(operation.responses).find((status) => status < '3').replace('XX', '00');
 const id = (operation) => operation.operationId;
 
 function contentOf(example) {
@@ -115,6 +137,7 @@ export const REFUSALS = [
   ['no-such-path', 'getDocsFile', {values: {file: 'none'}}],
   ['no-such-session', 'getSession', {values: {id: 'none'}}],
   ['no-such-polygon', 'getPolygon', {values: {pid: 'p99'}}],
+  ['no-such-job', 'getJob', {values: {id: 'none'}}],
   ['no-such-version', 'getChange', {values: {version: 99}}],
   ['outside-mesh', 'getElevation', {values: {x: 99, y: 99}}],
   ['version-mismatch', 'undo', {headers: {'If-Match': '"none-1"'}}],
@@ -151,6 +174,8 @@ export const ELSEWHERE = {
   'polygon-in-use': 'HistoryRoutes.KnowCascade',
   'replay-failed': 'HistoryRoutes.SayWhichOperationCannotBeDoneAgain',
   'out-of-memory': 'SessionStore.RefusesBeyondItsLimits',
+  'job-unfinished': 'JobRoutes.AnswerAtOnceAndLater',
+  'too-many-jobs': 'FewJobs.SayWhenToComeAgain',
   'stopped': 'SessionHistory.WorkThatIsStoppedChangesNothing',
   'internal': 'Router.TellsNothingOfAnException',
 };

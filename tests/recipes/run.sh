@@ -30,10 +30,9 @@ for _ in {1..600}; do
 done
 base=http://127.0.0.1:$(<"$scratch/port")
 
-# The page's curl, with the status of its answer in a file.
+# The page's curl, with the head of its answer in a file.
 curl() {
-    command curl --silent --show-error --max-time 120 --write-out '%{stderr}\n%{http_code}\n' "$@" 2>"$scratch/said" ||
-        fail "curl: $(<"$scratch/said")"
+    command curl --silent --show-error --max-time 120 --dump-header "$scratch/head" "$@"
 }
 
 # Lines of all sh blocks: no comments of their own, those that end in a backslash joined.
@@ -50,10 +49,10 @@ paste_all() {
         number=$((number + 1))
         echo "\$ $line"
         want=$(grep -oE '# [45][0-9]{2}\b' <<<"$line" | tail -n 1 | cut -c 3- || true)
-        : >"$scratch/said"
+        : >"$scratch/head"
         eval "${line//http:\/\/127.0.0.1:8080/$base}" >answer </dev/null || fail "the line failed"
         [[ $line == *curl* ]] || continue
-        status=$(tail -n 1 "$scratch/said")
+        status=$(sed -nE 's/^HTTP\/[0-9.]+ ([0-9]+).*/\1/p' "$scratch/head" | tail -n 1)
         if [[ -n $want ]]; then
             ((status == want)) || fail "answered $status instead of $want: $(head -c 2000 answer)"
         else

@@ -49,8 +49,11 @@ class Description {
         const json* const operation = find(request);
         if (operation == nullptr) return {};
         const std::string status = std::to_string(response.status);
-        if (!(*operation)["responses"].contains(status)) return "status " + status;
-        const json& answer = (*operation)["responses"][status];
+        const json& answers = (*operation)["responses"];
+        // The answers of other requests: what a job has to give.
+        if (answers.contains("default")) return {};
+        if (!answers.contains(status)) return "status " + status;
+        const json& answer = answers[status];
         std::string said = about_body(answer, response);
         for (const auto& [name, value] : response.headers) {
             if (!has_header(answer, name)) said += " header " + name;
