@@ -71,6 +71,60 @@ TEST_F(Service, TakesPostsWithoutALengthAsEmptyAndGoesOn) {
     }
 }
 
+TEST_F(Service, DoesLongWorkAsJobs) {
+    std::string grid = R"({"grid": {"origin": [0,0], "cell": [1,1], "columns": 700, "rows": 700,
+                           "elevations": [0)";
+    for (int i = 1; i < 700 * 700; ++i)
+        grid += i % 3 == 0 ? ",1" : ",2.5";
+    grid += "]}}";
+    const std::string later = "Prefer: respond-async";
+    const Answer accepted = ask(port(), "POST", "/v1/sessions", {kJson, later}, grid);
+    ASSERT_EQ(accepted.status, 202) << accepted.body;
+    EXPECT_EQ(accepted.header("preference-applied"), later.substr(8));
+    const std::string job = accepted.header("location");
+    double progress = 0.0;
+    json told;
+    do {
+        told = json::parse(ask(port(), "GET", job).body);
+        EXPECT_GE(told["progress"], progress);
+        progress = told["progress"];
+    } while (told["status"].is_null());
+    EXPECT_EQ(told["state"], "done");
+    const Answer made = ask(port(), "GET", job + "/result");
+    ASSERT_EQ(made.status, 201) << made.body;
+    const std::string session = made.header("location");
+    // Stopped or done: whatever it says has happened.
+    const std::string line = R"({"type": "LineString", "coordinates": [[0.3,0.7],[690,698]]})";
+    const Answer cut =
+        ask(port(), "POST", session + "/polygons?improve=paper", {kJson, later}, line);
+    const Answer ended = ask(port(), "DELETE", cut.header("location"));
+    ASSERT_EQ(ended.status, 200) << ended.body;
+    const json end = json::parse(ended.body);
+    const json now = json::parse(ask(port(), "GET", session).body);
+    EXPECT_EQ(now["version"], end["state"] == "done" ? 2 : 1) << end;
+    EXPECT_EQ(now["polygons"], end["state"] == "done" ? 1 : 0);
+    ask(port(), "DELETE", session);
+    // One that still runs when the server is told to stop goes with it: the suite's end looks.
+    EXPECT_EQ(ask(port(), "POST", "/v1/sessions", {kJson, later}, grid).status, 202);
+}
+
+TEST_F(Service, IntegratesInOneRequest) {
+    const std::string form =
+        "--x\r\nContent-Disposition: form-data; name=\"terrain\"; filename=\"t\"\r\n"
+        "Content-Type: application/json\r\n\r\n" +
+        kSquare +
+        "\r\n--x\r\nContent-Disposition: form-data; name=\"polygons\"\r\n\r\n"
+        R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,2]]]})"
+        "\r\n--x--\r\n";
+    const std::string type = "Content-Type: multipart/form-data; boundary=x";
+    const Answer report = ask(port(), "POST", "/v1/integrate", {type}, form);
+    ASSERT_EQ(report.status, 200) << report.body;
+    EXPECT_EQ(json::parse(report.body)["polygons"][0]["id"], "p1");
+    const Answer glb =
+        ask(port(), "POST", "/v1/integrate", {type, "Accept: model/gltf-binary"}, form);
+    EXPECT_EQ(glb.body.substr(0, 4), "glTF");
+}
+
 TEST_F(Service, LocksEdgesAlongALine) {
     const std::string session = make_session();
     const std::string line = R"({"type": "LineString", "coordinates": [[0,0],[10,10]]})";
