@@ -17,6 +17,10 @@ namespace tinsmith::core {
 
 namespace {
 
+Drift drift_on(const Tin& tin) {
+    return Drift(tin.vertex_count(), kUsualDrift * reach_of_rounding(tin));
+}
+
 /// One request on one mesh, whole or not at all: what is not kept is taken back.
 class Request {
   public:
@@ -25,7 +29,7 @@ class Request {
           shapes_(shapes),
           options_(options),
           limits_(limits_of(options)),
-          drift_(tin.vertex_count()),
+          drift_(drift_on(tin)),
           watch_(options.clock_ms),
           progress_(options.progress, shapes, improves_across() ? kShareOfMarch : 1.0) {
         limits_.progress = &progress_;
@@ -108,7 +112,7 @@ class Request {
         limits_ = limits_of(options_);
         limits_.progress = &progress_;
         progress_.begin();
-        drift_ = Drift(tin_.vertex_count());
+        drift_ = drift_on(tin_);
         report_.shapes.clear();
         changed_.clear();
         set_vertices_.clear();
