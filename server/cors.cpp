@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kExposed =
     "ETag, Location, Link, Idempotency-Replayed, X-Request-Id, traceparent, Retry-After, "
-    "Preference-Applied, "
-    "Tinsmith-Max-Error, Tinsmith-Flipped-Triangles, Tinsmith-Collapsed-Triangles, "
+    "Preference-Applied, Tinsmith-Max-Error, Tinsmith-Flipped-Triangles, "
+    "Tinsmith-Collapsed-Triangles, "
     "Tinsmith-Position-Bits, Tinsmith-Origin";
 
 /// Request headers that mean something here, lower-case.
@@ -57,14 +57,6 @@ void answer_preflight(const Request& request, Response& response) {
 }
 
 }  // namespace
-
-std::span<const std::string_view> understood_headers() {
-    return kUnderstood;
-}
-
-std::string_view exposed_headers() {
-    return kExposed;
-}
 
 void allow_origin(const Policy& policy, const Request& request, Response& response) {
     if (policy.cors_origins.empty()) return;

@@ -40,6 +40,17 @@ Response stopped_answer(const Request& request) {
                   "The job was stopped before its work began; nothing was changed.");
 }
 
+void log_end(const std::string& id, const Request& request, const Response& answer,
+             std::chrono::steady_clock::duration time) noexcept {
+    try {
+        const double ms = std::chrono::duration<double, std::milli>(time).count();
+        log_info("job " + id + " status=" + std::to_string(answer.status) +
+                 " ms=" + std::to_string(ms) + " request=" + request.id);
+    } catch (const std::exception&) {
+        // Want of memory: the job is done all the same.
+    }
+}
+
 api::JobState end_of(const Response& answer, bool told_to_stop) {
     if (answer.status < kFirstRefusal) return api::JobState::Done;
     const bool is_stopped = answer.status == api::problem_status(api::ProblemType::Stopped);
@@ -64,6 +75,7 @@ std::optional<api::JobView> Jobs::add(Request request, Task task) {
     }
     auto job = std::make_shared<Job>();
     job->view.id = new_id(++count_);
+    job->place.push_back(job->view.id);
     job->view.method = request.method;
     job->view.path = request.path;
     job->request = std::move(request);
@@ -104,16 +116,14 @@ void Jobs::run_jobs() {
             answer = job->task(job->request);
         }
         job->work.finish();
-        const double ms = std::chrono::duration<double, std::milli>(clock_() - start).count();
-        log_info("job " + job->view.id + " status=" + std::to_string(answer.status) +
-                 " ms=" + std::to_string(ms) + " request=" + job->request.id);
+        log_end(job->view.id, job->request, answer, clock_() - start);
         lock.lock();
         end(*job, std::move(answer));
     }
 }
 
 /// Requires: the lock.
-void Jobs::end(Job& job, Response answer) {
+void Jobs::end(Job& job, Response answer) noexcept {
     job.view.state = end_of(answer, job.work.stopped());
     job.view.status = answer.status;
     job.view.progress = job.work.progress();
@@ -129,7 +139,7 @@ void Jobs::end(Job& job, Response answer) {
     }
     job.answer = std::move(answer);
     bytes_ += job.bytes;
-    ended_.push_back(job.view.id);
+    ended_.splice(ended_.end(), job.place);
     while (bytes_ > bounds_.bytes && ended_.size() > 1 && drop_first_ended()) {
     }
     job_ended_.notify_all();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -82,12 +83,13 @@ class Jobs {
         Response answer;
         std::size_t bytes = 0;
         Time ended;
+        std::list<std::string> place;  ///< its id, to be moved into `ended_`: an end must not fail
     };
     using JobPtr = std::shared_ptr<Job>;
 
     static api::JobView view_of(const Job& job);
     void run_jobs();
-    void end(Job& job, Response answer);
+    void end(Job& job, Response answer) noexcept;
     void drop_old();
     bool drop_first_ended();
     void drop(const std::string& id);
@@ -99,7 +101,7 @@ class Jobs {
     std::condition_variable job_ended_;
     std::map<std::string, JobPtr> jobs_;  ///< in the order in which they came
     std::deque<JobPtr> queue_;
-    std::deque<std::string> ended_;  ///< ids, in that order; some perhaps dropped already
+    std::list<std::string> ended_;  ///< ids, in that order; some perhaps dropped already
     std::size_t bytes_ = 0;
     std::uint64_t count_ = 0;
     bool shutting_down_ = false;

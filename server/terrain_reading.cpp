@@ -38,6 +38,12 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     return is_tiff ? TerrainFormat::GeoTiff : TerrainFormat::Json;
 }
 
+std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
+    if (media_type == "application/json") return TerrainFormat::Json;
+    if (media_type == "image/tiff" || media_type == "image/geotiff") return TerrainFormat::GeoTiff;
+    return std::nullopt;
+}
+
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::ReadLimits& limits) {
     begin_stage(0.4);

@@ -58,6 +58,9 @@ Response get_job(Services&, const Request&, const PathArguments&);
 Response get_job_result(Services&, const Request&, const PathArguments&);
 Response delete_job(Services&, const Request&, const PathArguments&);
 
+// integrate_routes.cpp
+Response integrate_once(Services&, const Request&, const PathArguments&);
+
 // delta_routes.cpp
 Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?since=
 

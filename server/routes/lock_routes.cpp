@@ -110,6 +110,8 @@ Response set_locks(Services& services, const Request& request, const std::string
     auto& [session, edit, shapes] = std::get<0>(asked);
     const bool dry_run = edit.dry_run;
     const bool as_delta = edit.want_delta;
+    const auto memory = require_memory(services, request, dry_run ? session->mesh_bytes() : 0);
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     const auto outcome =
         session->set_locks(std::move(edit), rerun_limits(services.limits, services.stopping));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {

@@ -57,7 +57,7 @@ std::vector<Route> make_routes(Services& services) {
     const auto change = [&services, to](Function function) {
         return keyed(services, deferrable(services, to(function)));
     };
-    const auto question = [&services, to](Function function) {
+    const auto long_json = [&services, to](Function function) {
         return as_json(deferrable(services, to(function)));
     };
     const auto json = [to](Function function) { return as_json(to(function)); };
@@ -70,6 +70,7 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/docs", {}, to(get_docs)},
         {"GET", "/docs/{file}", {}, to(get_docs_file)},
         {"GET", "/v1/limits", {}, json(get_limits)},
+        {"POST", "/v1/integrate", {}, deferrable(services, to(integrate_once))},
         {"GET", "/v1/jobs", kPageParameters, json(list_jobs)},
         {"GET", "/v1/jobs/{id}", {}, json(get_job)},
         {"DELETE", "/v1/jobs/{id}", {}, json(delete_job)},
@@ -77,7 +78,7 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
         {"POST", "/v1/sessions", {}, as_json(change(create_session))},
         {"GET", "/v1/sessions/{id}", {}, json(get_session)},
-        {"PUT", "/v1/sessions/{id}", {}, question(put_session)},
+        {"PUT", "/v1/sessions/{id}", {}, long_json(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
         {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},
@@ -97,9 +98,9 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
-        {"POST", "/v1/sessions/{id}/elevation", {}, question(ask_elevations)},
-        {"POST", "/v1/sessions/{id}/profile", {}, question(ask_profile)},
-        {"POST", "/v1/sessions/{id}/volume", {}, question(ask_volume)},
+        {"POST", "/v1/sessions/{id}/elevation", {}, long_json(ask_elevations)},
+        {"POST", "/v1/sessions/{id}/profile", {}, long_json(ask_profile)},
+        {"POST", "/v1/sessions/{id}/volume", {}, long_json(ask_volume)},
     };
 }
 

@@ -25,8 +25,7 @@ constexpr std::string_view kTerrainTypes =
 /// The format by Content-Type, or 415 saying what curl should have been told.
 Step<TerrainFormat> require_terrain_format(const Request& request) {
     const std::string type = api::media_type_of(request.header("content-type").value_or(""));
-    if (type == "application/json") return TerrainFormat::Json;
-    if (type == "image/tiff" || type == "image/geotiff") return TerrainFormat::GeoTiff;
+    if (const auto format = terrain_format_named(type)) return *format;
     return refuse_media_type(request, type, "a terrain", kTerrainTypes,
                              "-H 'Content-Type: application/json' or "
                              "-H 'Content-Type: image/tiff'");

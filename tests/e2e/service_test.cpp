@@ -71,16 +71,6 @@ TEST_F(Service, TakesPostsWithoutALengthAsEmptyAndGoesOn) {
     }
 }
 
-TEST_F(Service, LocksEdgesAlongALine) {
-    const std::string session = make_session();
-    const std::string line = R"({"type": "LineString", "coordinates": [[0,0],[10,10]]})";
-    for (const auto& [method, changed] : {std::pair("PUT", 1), {"PUT", 0}, {"DELETE", 1}}) {
-        const Answer made = ask(port(), method, session + "/locks", {kJson}, line);
-        ASSERT_EQ(made.status, 200) << made.body;
-        EXPECT_EQ(json::parse(made.body)["changed"], changed);
-    }
-}
-
 TEST_F(Service, GoesBackAndForth) {
     const std::string session = make_session();
     const std::string polygon = R"({"type": "Polygon",
