@@ -36,9 +36,16 @@ export function curlLine(origin, path, method, parameters, body, content) {
   // A POST has a length, be it that of nothing.
   if (method === 'post' && !content) words.push('-d', "''");
   else if (method !== 'get' && method !== 'post') words.push('-X', method.toUpperCase());
-  if (body) words.push('-H', `'Content-Type: ${body}'`);
-  if (content?.externalValue) words.push('--data-binary', `@${content.externalValue}`);
-  else if (content) words.push('-d', `'${JSON.stringify(content.value)}'`);
+  const isForm = body === 'multipart/form-data';
+  if (body && !isForm) words.push('-H', `'Content-Type: ${body}'`);
+  if (isForm) {
+    for (const [name, value] of Object.entries(content.value))
+      words.push('-F', `'${name}=${JSON.stringify(value)};type=application/json'`);
+  } else if (content?.externalValue) {
+    words.push('--data-binary', `@${content.externalValue}`);
+  } else if (content) {
+    words.push('-d', `'${JSON.stringify(content.value)}'`);
+  }
   words.push(`'${origin}${filled}${query && '?' + query}'`);
   return words.join(' ');
 }

@@ -12,10 +12,12 @@ const BEFORE = {
   createSession: [],
   putSession: [],
   integratePolygons: ['putSession'],
+  integrateOnce: [],
   redo: ['putSession', 'integratePolygons', 'undo'],
   getLocks: ['putSession', 'integratePolygons', 'putLocks'],
 };
 const USUAL = ['putSession', 'integratePolygons'];
+const FORM = 'multipart/form-data';
 const ABOUT_A_JOB = ['getJob', 'getJobResult', 'deleteJob', 'listJobs'];
 
 /** What the examples of parameters do not say: [operation, query or path, media type that comes]. */
@@ -47,11 +49,12 @@ export class Client {
       if (p.required || p.name in values) query.set(p.name, value(p));
     for (const name of Object.keys(values).filter((name) => !(name in (this.job ?? {}))))
       if (!operation.parameters.some((p) => this.description.resolve(p).name === name)) query.set(name, values[name]);
-    if (body.type) headers = {'Content-Type': body.type, ...headers};
+    // Of a form the library says the type, with its boundary.
+    if (body.type && body.type !== FORM) headers = {'Content-Type': body.type, ...headers};
     const response = await fetch(`${this.origin}${path}${query.size > 0 ? `?${query}` : ''}`, {
       method: operation.method.toUpperCase(),
       headers: {'X-Request-Id': 'example', ...headers},
-      ...(raw ?? {body: contentOf(body.example)}),
+      ...(raw ?? {body: contentOf(body)}),
     });
     return answerOf(operation, response);
   }
@@ -101,8 +104,14 @@ export function exampleCases(description) {
 export const successOf = (operation) => Object.keys(operation.responses).find((status) => status < '3').replace('XX', '00');
 const id = (operation) => operation.operationId;
 
-function contentOf(example) {
+function contentOf({type, example}) {
   if (!example) return undefined;
+  if (type === FORM) {
+    const form = new FormData();
+    for (const [name, value] of Object.entries(example.value))
+      form.append(name, new Blob([JSON.stringify(value)], {type: 'application/json'}));
+    return form;
+  }
   if (example.externalValue) return readFileSync(join(project, example.externalValue));
   return JSON.stringify(example.value);
 }

@@ -154,5 +154,20 @@ TEST(OpenApiOptions, AreThoseOfMeshes) {
     EXPECT_EQ(said->normals, unsaid->normals);
 }
 
+TEST(OpenApiOptions, OfOneRequestForAllAreBoth) {
+    Names wanted;
+    for (const auto names : {polygon_option_names(), mesh_option_names()})
+        wanted.insert(names.begin(), names.end());
+    // There is one version and nothing that a box could leave out.
+    wanted.erase("version");
+    wanted.erase("bbox");
+    const Json document = Json::parse(openapi_document());
+    Names described;
+    for (const auto& [name, schema] :
+         document["components"]["schemas"]["IntegrateOptions"]["properties"].items())
+        described.insert(name);
+    EXPECT_EQ(described, wanted);
+}
+
 }  // namespace
 }  // namespace tinsmith::api
