@@ -27,7 +27,8 @@ struct ChangeRequest {
 /// How a version came about, copied out.
 struct ChangeCopy {
     api::ChangeView view;
-    std::shared_ptr<const core::Report> report;  ///< of a polygons request, else null
+    std::shared_ptr<const core::Report> report;     ///< of a polygons request, else null
+    std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit, else null
 };
 
 struct ChangeResult {

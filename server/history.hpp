@@ -20,16 +20,17 @@ struct HistoryLimits {
     std::size_t bytes = std::size_t{256} << 20;
 };
 
-enum class ChangeKind { Created, Polygons, Undo, Redo, Removal };
+enum class ChangeKind { Created, Polygons, Edit, Undo, Redo, Removal };
 
 /// How a version came about. Every version has one.
 struct Change {
     std::uint64_t version = 0;
     ChangeKind kind = ChangeKind::Created;
-    std::uint64_t of = 0;                        ///< undo, redo: the version they are about
-    std::vector<std::string> polygons;           ///< that it brought, took out, or is about
-    std::shared_ptr<const core::Report> report;  ///< of a polygons request
-    std::size_t vertices = 0;                    ///< of the mesh at that version
+    std::uint64_t of = 0;                           ///< undo, redo: the version they are about
+    std::vector<std::string> polygons;              ///< that it brought, took out, or is about
+    std::shared_ptr<const core::Report> report;     ///< of a polygons request
+    std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit
+    std::size_t vertices = 0;                       ///< of the mesh at that version
     std::size_t triangles = 0;
     std::vector<std::shared_ptr<const SlotChanges>> written;  ///< since the version before
 };

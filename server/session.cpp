@@ -41,15 +41,6 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
                           edit.winding, std::move(options)});
 }
 
-/// The edit is made by now: want of memory must not look as if it had failed.
-std::optional<core::MeshData> copy_if_possible(const core::Tin& tin) {
-    try {
-        return tin.to_data();
-    } catch (const std::bad_alloc&) {
-        return std::nullopt;
-    }
-}
-
 bool is_expected(const PolygonEdit& edit, std::uint64_t version) {
     return !edit.expected_version || *edit.expected_version == version;
 }
@@ -132,44 +123,71 @@ void Session::refresh_view() noexcept {
     view_.memory_bytes = tin_.memory_bytes() + history_.memory_bytes();
 }
 
+core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kind,
+                                          std::vector<std::string> polygons,
+                                          const RunLimits& limits) {
+    // Memory first: once the mesh has changed, nothing may fail before it is on record.
+    const std::uint64_t made = version() + 1;
+    Edit step;
+    step.version = made;
+    step.first = history_.base() + history_.applied().size();
+    step.added.push_back({made, operation});
+    step.polygons = polygons;
+    std::vector<AppliedPtr> done(1);
+    Change change;
+    change.version = made;
+    change.kind = kind;
+    change.polygons = std::move(polygons);
+    change.written.resize(1);
+    history_.prepare(1);
+    auto applied = run(tin_, made, std::move(operation), limits, polygon_finder());
+    if (!applied) return applied;
+    change.report = (*applied)->report;
+    change.answer = (*applied)->answer;
+    change.vertices = tin_.vertex_count();
+    change.triangles = tin_.triangle_count();
+    change.written[0] = (*applied)->written;
+    step.added_bytes = (*applied)->lasting_bytes;
+    done[0] = *applied;
+    history_.make(std::move(step), std::move(done), std::move(change));
+    return applied;
+}
+
+PolygonFinder Session::polygon_finder() const {
+    return [this](std::string_view id) -> std::optional<Polygon> {
+        for (const Polygon& polygon : history_.polygons())
+            if (polygon.id() == id) return polygon;
+        return std::nullopt;
+    };
+}
+
 PolygonOutcome Session::integrate(PolygonEdit edit) {
     if (edit.dry_run) return integrate_dry(edit);
     const auto lock = lock_to_write();
     const std::uint64_t before = version();
     if (!is_expected(edit, before)) return VersionMismatch{before};
-    // Memory first: once the mesh has changed, nothing may fail before it is on record.
     const RunLimits limits = limits_of(edit, tin_);
     PolygonResult result;
     result.version = before + 1;
     result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
-    const OperationPtr operation = operation_of(edit, result.polygon_ids);
-    Edit step;
-    step.version = result.version;
-    step.first = history_.base() + history_.applied().size();
-    step.added.push_back({result.version, operation});
-    step.polygons = result.polygon_ids;
-    std::vector<AppliedPtr> done(1);
-    Change change;
-    change.version = result.version;
-    change.kind = ChangeKind::Polygons;
-    change.polygons = result.polygon_ids;
-    change.written.resize(1);
-    history_.prepare(1);
-    auto applied = run(tin_, result.version, operation, limits);
-    if (!applied) return std::move(applied.errors());
+    const auto applied = perform(operation_of(edit, result.polygon_ids), ChangeKind::Polygons,
+                                 result.polygon_ids, limits);
+    if (!applied) return applied.errors();
     result.report = (*applied)->report;
-    change.report = (*applied)->report;
-    change.vertices = tin_.vertex_count();
-    change.triangles = tin_.triangle_count();
-    change.written[0] = (*applied)->written;
-    step.added_bytes = (*applied)->lasting_bytes;
-    done[0] = std::move(*applied);
-    history_.make(std::move(step), std::move(done), std::move(change));
     next_polygon_ += result.polygon_ids.size();
     refresh_view();
-    if (edit.want_mesh) result.mesh = copy_if_possible(tin_);
+    if (edit.want_mesh) result.mesh = mesh_if_possible();
     if (edit.want_delta) result.delta = delta_if_possible(before);
     return result;
+}
+
+/// The edit is made by now: want of memory must not look as if it had failed.
+std::optional<core::MeshData> Session::mesh_if_possible() const {
+    try {
+        return tin_.to_data();
+    } catch (const std::bad_alloc&) {
+        return std::nullopt;
+    }
 }
 
 PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {

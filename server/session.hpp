@@ -17,6 +17,7 @@
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
 #include "server/change.hpp"
+#include "server/edit.hpp"
 #include "server/history.hpp"
 #include "server/polygon.hpp"
 
@@ -81,6 +82,9 @@ class Session {
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);
 
+    /// Edits the mesh inside a polygon. A dry run works on a copy and holds no writer's lock.
+    EditOutcome edit(PendingEdit edit);
+
     /// Takes the newest edit back that was not taken back.
     ChangeOutcome undo(const ChangeRequest& request);
     /// Does the edit again that was taken back last: the same bytes as before.
@@ -98,9 +102,16 @@ class Session {
 
   private:
     PolygonOutcome integrate_dry(const PolygonEdit& edit) const;
+    EditOutcome edit_dry(const PendingEdit& edit) const;
+    /// Runs a new operation and keeps it as the next version. Requires: the writer's lock.
+    core::Result<AppliedPtr> perform(OperationPtr operation, ChangeKind kind,
+                                     std::vector<std::string> polygons, const RunLimits& limits);
+    /// Of the operations that the mesh holds now. Requires: a lock, for as long as it is in use.
+    PolygonFinder polygon_finder() const;
     /// What `replace` does to the newest operations, and how that is kept.
     struct Replacement;
     ChangeOutcome replace(const ChangeRequest& request, Replacement replacement);
+    std::optional<core::MeshData> mesh_if_possible() const;
     std::optional<api::MeshDelta> delta_if_possible(std::uint64_t from) const;
     api::MeshDelta delta_from(const Change& start) const;
     std::uint64_t version() const { return history_.version(); }

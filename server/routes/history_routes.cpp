@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "api/edit_answer.hpp"
 #include "api/history.hpp"
 #include "api/responses.hpp"
 #include "server/polygon_reading.hpp"
@@ -102,21 +103,14 @@ Response send_change(const Request& request, Services& services, const Asked& as
         .with("Vary", "Accept");
 }
 
-/// A polygons request's own report again; of another change what is told of it.
+/// A polygons request's own report again, or an edit's; of another change what is told of it.
 std::string text_of(const Session& session, const ChangeCopy& change) {
+    if (change.answer) {
+        return api::write_edit(session.facts().id, change.view.version, false, *change.answer);
+    }
     if (!change.report) return api::write_change(session.facts().id, change.view);
     return api::write_report(
         {session.facts().id, change.view.version, false, change.view.polygons, *change.report});
-}
-
-Step<bool> require_cascade(const Request& request) {
-    const auto cascade = request.parameter("cascade");
-    if (!cascade || *cascade == "false") return false;
-    if (*cascade == "true") return true;
-    std::string detail = "cascade is true or false.";
-    return refuse(request, {api::ProblemType::InvalidParameter,
-                            detail,
-                            {{"INVALID_VALUE", detail, {}, {}, {}, "cascade"}}});
 }
 
 }  // namespace
@@ -141,7 +135,7 @@ Response delete_polygon(Services& services, const Request& request,
                         const PathArguments& arguments) {
     const auto asked = require_change(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
-    const auto cascade = require_cascade(request);
+    const auto cascade = require_flag(request, "cascade");
     if (const auto* refusal = std::get_if<Response>(&cascade)) return *refusal;
     const Asked& what = std::get<0>(asked);
     const auto outcome =

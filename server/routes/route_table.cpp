@@ -17,6 +17,7 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
+constexpr std::array<std::string_view, 1> kEdit{"dry_run"};
 constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
@@ -72,6 +73,7 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/polygons", kPageParameters, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
+        {"POST", "/v1/sessions/{id}/edits", kEdit, change(edit_polygon)},
         {"POST", "/v1/sessions/{id}/undo", {}, change(undo_edit)},
         {"POST", "/v1/sessions/{id}/redo", {}, change(redo_edit)},
         {"GET", "/v1/sessions/{id}/history", {}, json(get_history)},
