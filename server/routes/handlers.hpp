@@ -35,6 +35,9 @@ Response integrate_polygons(Services&, const Request&, const PathArguments&);
 Response list_polygons(Services&, const Request&, const PathArguments&);
 Response get_polygon(Services&, const Request&, const PathArguments&);
 
+// edit_routes.cpp
+Response edit_polygon(Services&, const Request&, const PathArguments&);
+
 // history_routes.cpp
 Response delete_polygon(Services&, const Request&, const PathArguments&);
 Response undo_edit(Services&, const Request&, const PathArguments&);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether an answer is the one that is shown, but for what differs from one time to the next.
 
-const OF_THE_MOMENT = new Set(['memory_bytes', 'locate', 'integrate', 'improve', 'request_id']);
+const OF_THE_MOMENT = new Set(['memory_bytes', 'locate', 'integrate', 'improve', 'apply', 'request_id']);
 /** Ids of the server's choice, births in tags. */
 const RANDOM = /[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[0-9a-f]{4}-[0-9a-f]{12}|[0-9a-f]{16}(?=-\d)/g;
 /** Angles and areas may differ in their last digits from one library of mathematics to another. */
