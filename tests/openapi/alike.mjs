@@ -3,7 +3,7 @@
 
 const OF_THE_MOMENT = new Set(['memory_bytes', 'locate', 'integrate', 'improve', 'apply', 'request_id']);
 /** Ids of the server's choice, births in tags. */
-const RANDOM = /[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[0-9a-f]{4}-[0-9a-f]{12}|[0-9a-f]{16}(?=-\d)/g;
+const RANDOM = /[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[0-9a-f]{4}-[0-9a-f]{12}|[0-9a-f]{12}-[0-9a-f]{16}|[0-9a-f]{16}(?=-\d)/g;
 /** Angles and areas may differ in their last digits from one library of mathematics to another. */
 const ROUNDING = 1e-9;
 
