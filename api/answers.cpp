@@ -120,6 +120,8 @@ std::string write_volume(const VolumeView& view) {
     json["polygon"] = view.polygon.empty() ? Json(nullptr) : Json(view.polygon);
     if (const auto* other = std::get_if<OtherSession>(&view.against)) {
         json["against"] = {{"session", other->id}, {"version", view.other_version}};
+    } else if (std::holds_alternative<EarlierVersion>(view.against)) {
+        json["against"] = {{"version", view.other_version}};
     } else {
         json["against"] = json_of(std::get<core::Plane>(view.against));
     }

@@ -30,7 +30,7 @@ struct VolumeView {
     double area_left_out = 0.0;  ///< of what was asked for, where one of the surfaces is not
     std::string_view polygon;    ///< id; empty: none of the session's
     const Against& against;
-    std::uint64_t other_version = 0;  ///< where `against` is another session
+    std::uint64_t other_version = 0;  ///< where `against` is a surface with versions
 };
 
 /// All bodies are JSON texts that end with a newline. Numbers read back to the same double.

@@ -33,6 +33,7 @@ enum class FaultKind {
     Invalid,      ///< well formed, but not what was asked for
     TooLarge,     ///< beyond a limit of this server
     Unsupported,  ///< right and meaningful, but not done by this version
+    Stopped,      ///< the caller said so: nothing is known to be wrong
     Parameter,    ///< an option given outside the body has a value it cannot have
 };
 

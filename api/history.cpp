@@ -42,7 +42,7 @@ std::string write_history(const HistoryView& history) {
     }
     const Json json{{"session", history.session},
                     {"version", history.version},
-                    {"oldest", history.changes.front().version},
+                    {"oldest", history.oldest},
                     {"undo", number_or_null(history.undo)},
                     {"redo", number_or_null(history.redo)},
                     {"changes", std::move(changes)}};

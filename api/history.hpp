@@ -25,9 +25,10 @@ struct ChangeView {
 struct HistoryView {
     std::string_view session;
     std::uint64_t version = 0;
+    std::uint64_t oldest = 0;           ///< of all versions that are kept
     std::optional<std::uint64_t> undo;  ///< the version that undo would take back; null: none
     std::optional<std::uint64_t> redo;
-    std::span<const ChangeView> changes;  ///< oldest first; not empty
+    std::span<const ChangeView> changes;  ///< oldest first
 };
 
 /// {"session", "version", "change", "of"?, "polygons", "vertices", "triangles"}

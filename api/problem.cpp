@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include <nlohmann/json.hpp>
 
@@ -60,7 +61,10 @@ constexpr std::array kTable{
     Row{VersionGone, "version-gone", "The version is no longer kept", 410},
     Row{TooManySessions, "too-many-sessions", "No room for another session", 429},
     Row{OutOfMemory, "out-of-memory", "Not enough memory", 507},
+    Row{NoSuchJob, "no-such-job", "There is no such job", 404},
+    Row{JobUnfinished, "job-unfinished", "The job has not ended yet", 409},
     Row{Stopped, "stopped", "The work was stopped", 503},
+    Row{TooManyJobs, "too-many-jobs", "No room for another job", 503},
     Row{Internal, "internal", "The server failed", 500},
 };
 
@@ -110,8 +114,29 @@ std::string_view problem_word(ProblemType type) {
     return row_of(type).word;
 }
 
+std::string_view problem_title(ProblemType type) {
+    return row_of(type).title;
+}
+
 int problem_status(ProblemType type) {
     return row_of(type).status;
+}
+
+std::span<const ProblemType> all_problems() {
+    static constexpr auto kTypes = [] {
+        std::array<ProblemType, kTable.size()> types{};
+        std::transform(kTable.begin(), kTable.end(), types.begin(),
+                       [](const Row& row) { return row.type; });
+        return types;
+    }();
+    return kTypes;
+}
+
+ProblemType problem_of_word(std::string_view word) {
+    const auto* found = std::find_if(kTable.begin(), kTable.end(),
+                                     [word](const Row& row) { return row.word == word; });
+    assert(found != kTable.end());
+    return found == kTable.end() ? Internal : found->type;
 }
 
 ProblemType problem_of_status(int status) {
@@ -139,6 +164,9 @@ Problem problem_of_faults(FaultKind kind, Faults faults) {
             break;
         case FaultKind::Parameter:
             type = InvalidParameter;
+            break;
+        case FaultKind::Stopped:
+            type = Stopped;
             break;
     }
     return {type, summary_of(faults), std::move(faults)};

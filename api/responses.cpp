@@ -124,7 +124,7 @@ std::string write_report(const ReportView& view) {
     }
     const core::StageTimes& times = view.report.time_ms;
     return text_of(
-        {{"session", view.session},
+        {{"session", view.session.empty() ? Json(nullptr) : Json(view.session)},
          {"version", view.version},
          {"dry_run", view.dry_run},
          {"polygons", std::move(polygons)},

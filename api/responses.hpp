@@ -29,7 +29,7 @@ struct SessionView {
 
 /// What is told of an edit. `polygon_ids` and `report.shapes` go together, one for one.
 struct ReportView {
-    std::string_view session;
+    std::string_view session;  ///< empty: none is kept, written as null
     std::uint64_t version = 0;
     bool dry_run = false;
     std::span<const std::string> polygon_ids;

@@ -28,6 +28,7 @@ struct ChangeRequest {
 struct ChangeCopy {
     api::ChangeView view;
     std::shared_ptr<const core::Report> report;     ///< of a polygons request, else null
+    std::shared_ptr<const LocksDone> locks;         ///< of a locks request, else null
     std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit, else null
 };
 
@@ -53,22 +54,19 @@ struct PolygonInUse {
 using ChangeOutcome = std::variant<ChangeResult, VersionMismatch, NothingToDo, NoSuchPolygon,
                                    PolygonSettled, PolygonInUse, ReplayFailure>;
 
-/// The version is older than what is kept.
-struct VersionGone {
-    std::uint64_t oldest = 0;
-};
-
 /// The version does not exist yet.
 struct VersionAhead {
     std::uint64_t current = 0;
 };
 
-/// The history, copied out.
+/// The history, or a part of it, copied out.
 struct HistoryCopy {
     std::uint64_t version = 0;
+    std::uint64_t oldest = 0;           ///< of all that is kept
     std::optional<std::uint64_t> undo;  ///< the version that undo would take back
     std::optional<std::uint64_t> redo;  ///< the version whose edit redo would do again
     std::vector<api::ChangeView> changes;
+    bool more = false;  ///< others follow these
 };
 
 }  // namespace tinsmith::server

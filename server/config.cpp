@@ -94,6 +94,20 @@ void add_limits(CLI::App& app, Limits& limits) {
     add("max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
         ->check(digit_first())
         ->check(CLI::PositiveNumber);
+    add("max_points", limits.max_points, "Points of one question for elevations")
+        ->check(digit_first());
+    add("max_profile_crossings", limits.max_profile_crossings, "Edges crossed by one profile")
+        ->check(digit_first());
+    add("job_threads", limits.job_threads, "Requests done as jobs at the same time")
+        ->check(CLI::Range(1, 64));
+    add("max_jobs", limits.max_jobs, "Jobs in any state")->check(digit_first());
+    add("max_queued_jobs", limits.max_queued_jobs, "Jobs that wait for a thread")
+        ->check(digit_first());
+    add("job_bytes", limits.job_bytes, "Bytes of their requests and answers")
+        ->transform(bytes)
+        ->transform(digit_first());
+    add("job_seconds", limits.job_seconds, "Time for which answers of jobs are kept")
+        ->check(digit_first());
     add("mesh_cache", limits.mesh_cache, "Bytes of encoded meshes to keep; 0: none")
         ->transform(bytes)
         ->transform(digit_first());

@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kExposed =
     "ETag, Location, Link, Idempotency-Replayed, X-Request-Id, traceparent, Retry-After, "
-    "Tinsmith-Max-Error, Tinsmith-Flipped-Triangles, Tinsmith-Collapsed-Triangles, "
+    "Preference-Applied, Tinsmith-Max-Error, Tinsmith-Flipped-Triangles, "
+    "Tinsmith-Collapsed-Triangles, "
     "Tinsmith-Position-Bits, Tinsmith-Origin";
 
 /// Request headers that mean something here, lower-case.

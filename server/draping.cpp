@@ -24,10 +24,6 @@ bool drape_chain(const core::Tin& tin, const core::ConstraintHistory& history,
            last == chain.vertices.back();
 }
 
-bool is_polygonal(api::GeometryType type) {
-    return type == api::GeometryType::Polygon || type == api::GeometryType::MultiPolygon;
-}
-
 }  // namespace
 
 api::DrapedPolygon drape(const core::Tin& tin, const core::ConstraintHistory& history,
@@ -46,7 +42,7 @@ api::DrapedPolygon drape(const core::Tin& tin, const core::ConstraintHistory& hi
         const bool is_whole = drape_chain(tin, history, chain, draped.lines);
         draped.partly_outside = draped.partly_outside || !is_whole;
     }
-    if (is_polygonal(polygon.origin().type)) {
+    if (polygon.has_inside()) {
         const core::Region region =
             core::find_region(tin, history, {polygon.outline(), report.chains, report.outside},
                               polygon.request.winding);

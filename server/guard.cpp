@@ -30,13 +30,7 @@ std::optional<std::uint64_t> parse_length(std::string_view text) {
 std::optional<Problem> check_length(const Request& request, const Limits& limits) {
     const std::size_t count = count_headers(request, "content-length");
     if (count > 1) return Problem{ProblemType::BadRequest, "Send one Content-Length header.", {}};
-    if (count == 0) {
-        if (!takes_body(request.method)) return std::nullopt;
-        return Problem{ProblemType::LengthRequired,
-                       "Send the body with a Content-Length header (curl does so with -d and "
-                       "--data-binary; an empty body is Content-Length: 0).",
-                       {}};
-    }
+    if (count == 0) return std::nullopt;  // an empty body (RFC 9112 6.3)
     const auto length = parse_length(*request.header("content-length"));
     if (!length) {
         return Problem{ProblemType::BadRequest, "Content-Length is not a decimal number.", {}};
@@ -60,7 +54,7 @@ std::optional<Problem> check_length(const Request& request, const Limits& limits
 }  // namespace
 
 bool takes_body(const std::string& method) {
-    return method == "POST" || method == "PUT" || method == "PATCH";
+    return method == "POST" || method == "PUT" || method == "PATCH" || method == "DELETE";
 }
 
 std::optional<Problem> check_request_head(const Request& request, const Limits& limits) {

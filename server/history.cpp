@@ -32,6 +32,32 @@ const Change* History::change_at(std::uint64_t version) const {
     return &changes_[version - oldest];
 }
 
+std::variant<WayBack, VersionGone> History::way_to(std::uint64_t version) const {
+    std::vector<Rerun> list;
+    list.reserve(applied_.size());
+    for (const AppliedPtr& applied : applied_)
+        list.push_back({applied->version, applied->operation});
+    for (std::uint64_t v = this->version(); v > version; --v) {
+        const Change* change = change_at(v);
+        if (change == nullptr || !change->step || change->step->first < base()) {
+            return VersionGone{change == nullptr ? changes_.front().version : v};
+        }
+        list.resize(change->step->first - base());
+        list.insert(list.end(), change->step->removed.begin(), change->step->removed.end());
+    }
+    if (change_at(version) == nullptr) return VersionGone{changes_.front().version};
+    // The same operations on the same ones before them gave the same mesh.
+    std::size_t same = 0;
+    while (same < list.size() && same < applied_.size() &&
+           list[same].operation == applied_[same]->operation)
+        ++same;
+    WayBack way;
+    const auto first = static_cast<std::ptrdiff_t>(same);
+    way.taken.assign(applied_.begin() + first, applied_.end());
+    way.wanted.assign(list.begin() + first, list.end());
+    return way;
+}
+
 std::vector<Polygon> History::polygons() const {
     std::vector<Polygon> list;
     const auto add = [&list](const auto& done) {
@@ -69,10 +95,14 @@ std::size_t History::memory_bytes() const {
         sum += sizeof edit + edit.removed_bytes;
     for (const Edit& edit : redoable_)
         sum += sizeof edit + edit.added_bytes;
+    for (const Change& change : changes_)
+        sum += change.lone_bytes;
     return sum;
 }
 
 void History::make(Edit edit, std::vector<AppliedPtr> done, Change change) noexcept {
+    for (const Edit& dropped : redoable_)
+        leave_to_steps(dropped.version, dropped.added_bytes);
     redoable_.clear();
     replace(edit.first, done);
     undoable_.push_back(std::move(edit));
@@ -113,20 +143,51 @@ void History::settle_oldest() noexcept {
     // Undo goes from the newest on: what is older than one that is out of reach is so too.
     const auto last = std::find_if(undoable_.rbegin(), undoable_.rend(),
                                    [this](const Edit& edit) { return edit.first < base(); });
+    for (auto edit = undoable_.begin(); edit != last.base(); ++edit)
+        leave_to_steps(edit->version, edit->removed_bytes);
     undoable_.erase(undoable_.begin(), last.base());
+}
+
+void History::drop_oldest_undoable() noexcept {
+    leave_to_steps(undoable_.front().version, undoable_.front().removed_bytes);
+    undoable_.erase(undoable_.begin());
+}
+
+/// An edit is about to go, and with it the last but the steps that keeps some operations. They stay
+/// as long as the newest change that is about the edit.
+void History::leave_to_steps(std::uint64_t version, std::size_t bytes) noexcept {
+    const auto about =
+        std::find_if(changes_.rbegin(), changes_.rend(), [version](const Change& change) {
+            return change.version == version || change.of == version;
+        });
+    if (about != changes_.rend() && about->step) about->lone_bytes += bytes;
+}
+
+/// False: no step keeps anything alone. Versions before the ones forgotten are gone.
+bool History::forget_oldest_lone() noexcept {
+    const auto lone = std::find_if(changes_.begin(), changes_.end(),
+                                   [](const Change& change) { return change.lone_bytes > 0; });
+    if (lone == changes_.end()) return false;
+    for (auto change = changes_.begin(); change <= lone; ++change) {
+        change->step.reset();
+        change->lone_bytes = 0;
+    }
+    return true;
 }
 
 /// Ends: each turn an edit or an operation less.
 void History::shrink() noexcept {
     if (changes_.size() > limits_.operations + 1) changes_.erase(changes_.begin());
-    if (undoable_.size() > limits_.operations) undoable_.erase(undoable_.begin());
+    if (undoable_.size() > limits_.operations) drop_oldest_undoable();
     while (applied_.size() > limits_.operations || memory_bytes() > limits_.bytes) {
         const bool is_needed = !undoable_.empty() && undoable_.back().first <= base();
         // What could be redone stands on the operations that are there now.
-        if (applied_.size() > 1 && !is_needed && redoable_.empty()) {
+        if (memory_bytes() > limits_.bytes && forget_oldest_lone()) {
+            continue;
+        } else if (applied_.size() > 1 && !is_needed && redoable_.empty()) {
             settle_oldest();
         } else if (undoable_.size() > 1) {
-            undoable_.erase(undoable_.begin());
+            drop_oldest_undoable();
         } else {
             break;
         }

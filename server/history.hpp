@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "server/delta.hpp"
@@ -20,7 +21,20 @@ struct HistoryLimits {
     std::size_t bytes = std::size_t{256} << 20;
 };
 
-enum class ChangeKind { Created, Polygons, Edit, Undo, Redo, Removal };
+enum class ChangeKind { Created, Polygons, Locks, Edit, Undo, Redo, Removal };
+
+/// An operation to be run, and the version under which it is known.
+struct Rerun {
+    std::uint64_t version = 0;
+    OperationPtr operation;
+};
+
+/// What a change did to the operations on the mesh: those from place `first` on gave way to others.
+struct Exchange {
+    std::size_t first = 0;  ///< counted from the session's creation
+    std::vector<Rerun> removed;
+    std::vector<Rerun> added;
+};
 
 /// How a version came about. Every version has one.
 struct Change {
@@ -30,15 +44,23 @@ struct Change {
     std::vector<std::string> polygons;              ///< that it brought, took out, or is about
     std::shared_ptr<const core::Report> report;     ///< of a polygons request
     std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit
+    std::shared_ptr<const LocksDone> locks;         ///< of a locks request
     std::size_t vertices = 0;                       ///< of the mesh at that version
     std::size_t triangles = 0;
     std::vector<std::shared_ptr<const SlotChanges>> written;  ///< since the version before
+    std::optional<Exchange> step;  ///< since the version before; nothing: no longer kept
+    std::size_t lone_bytes = 0;    ///< about what operations hold that steps alone keep
 };
 
-/// An operation to be run, and the version under which it is known.
-struct Rerun {
-    std::uint64_t version = 0;
-    OperationPtr operation;
+/// What makes the mesh of an earlier version of the mesh as it is.
+struct WayBack {
+    std::vector<AppliedPtr> taken;  ///< the newest on the mesh, oldest first: to be taken back
+    std::vector<Rerun> wanted;      ///< then to be run
+};
+
+/// The version is older than what is kept.
+struct VersionGone {
+    std::uint64_t oldest = 0;
 };
 
 /// An edit as undo and redo see it: from place `first` on, operations that the mesh held gave way
@@ -69,6 +91,9 @@ class History {
     /// How the versions that are kept came about, oldest first; each follows on the one before.
     const std::vector<Change>& changes() const { return changes_; }
     const Change* change_at(std::uint64_t version) const;
+    /// Requires: the version is not a later one than the current. Cost: the changes since, with the
+    /// operations on the mesh.
+    std::variant<WayBack, VersionGone> way_to(std::uint64_t version) const;
     /// Those that can be taken back, oldest first.
     const std::vector<AppliedPtr>& applied() const { return applied_; }
     /// The place of the first of these, counted from the session's creation.
@@ -101,6 +126,9 @@ class History {
     void replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept;
     void keep(Change change) noexcept;
     void settle_oldest() noexcept;
+    void drop_oldest_undoable() noexcept;
+    void leave_to_steps(std::uint64_t version, std::size_t bytes) noexcept;
+    bool forget_oldest_lone() noexcept;
     void shrink() noexcept;
 
     HistoryLimits limits_;

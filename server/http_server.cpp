@@ -225,6 +225,7 @@ class HttpServer::Impl {
         server_.Post("/", with_body);
         server_.Put("/", with_body);
         server_.Patch("/", with_body);
+        server_.Delete("/", with_body);
         server_.set_error_handler([this](const httplib::Request& raw, httplib::Response& out) {
             if (!out.has_header("X-Request-Id")) answer_for_library(raw, out);
         });
@@ -264,6 +265,9 @@ class HttpServer::Impl {
         if (takes_body(raw.method)) {
             auto& mine = mutable_request(raw);
             mine.path = "/";  // all that the library's regular expressions ever see
+            // No length means no body (RFC 9112 6.3), where the library would read until the
+            // connection ends.
+            if (!head.request.header("content-length")) mine.set_header("Content-Length", "0");
             mine.headers.erase("Content-Type");  // its parser of forms calls what nobody gave it
             pending() = std::move(head.request);
             return Handled::Unhandled;

@@ -17,8 +17,15 @@ struct Limits {
     std::size_t max_history_bytes = std::size_t{256} << 20;  ///< that they hold, of one session
     std::uint64_t max_crossings = 50'000'000;                ///< of one request
     double max_edit_seconds = 60.0;                          ///< of one request
-    std::size_t mesh_cache = std::size_t{256} << 20;         ///< bytes of encoded meshes
-    std::size_t kept_answers = std::size_t{64} << 20;        ///< bytes, for retries by key
+    std::size_t max_points = 100'000;                        ///< of one question for elevations
+    std::uint64_t max_profile_crossings = 1'000'000;   ///< of one profile: its answer's points
+    std::size_t job_threads = 2;                       ///< requests done as jobs at a time
+    std::size_t max_jobs = 1000;                       ///< in any state
+    std::size_t max_queued_jobs = 64;                  ///< that wait for a thread
+    std::size_t job_bytes = std::size_t{256} << 20;    ///< their requests and answers
+    std::uint64_t job_seconds = 3600;                  ///< for which answers are kept
+    std::size_t mesh_cache = std::size_t{256} << 20;   ///< bytes of encoded meshes
+    std::size_t kept_answers = std::size_t{64} << 20;  ///< bytes, for retries by key
 };
 
 /// Shape of a request before its body is read; see `check_request`.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/mesh/surgery.hpp"
+
 namespace tinsmith::server {
 
 namespace {
@@ -72,6 +74,7 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polyg
     core::IntegrateOptions options = polygons.options;
     options.cancelled = limits.cancelled;
     options.clock_ms = limits.clock_ms;
+    options.progress = limits.progress;
     options.max_crossings = limits.max_crossings;
     options.max_new_triangles = limits.max_new_triangles;
     const auto kept_report = std::make_shared<core::Report>();
@@ -84,6 +87,66 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polyg
         applied->lasting_bytes += bytes_of(polygons, *kept_report, i);
     applied->record_bytes = bytes_of(applied->undo, *applied->written);
     applied->report = kept_report;
+    guard.keep();
+    return AppliedPtr(std::move(applied));
+}
+
+std::size_t bytes_of(const LocksOperation& operation, const LocksDone& done) {
+    std::size_t sum = sizeof operation + sizeof done;
+    for (const core::Shape& shape : operation.shapes) {
+        for (const core::Path& path : shape.paths)
+            sum += sizeof path + path.points.size() * sizeof(core::Point2);
+    }
+    for (const core::LockReport& report : done.paths) {
+        sum += sizeof report;
+        for (const auto& stretch : report.without_edge)
+            sum += sizeof stretch + stretch.size() * sizeof(core::Point2);
+    }
+    return sum;
+}
+
+bool found_nothing(const core::Errors& errors) {
+    return errors.front().code == core::ErrorCode::NoEdgeAlong;
+}
+
+/// Whole or not at all: a path that is refused takes the others with it, all faults are told.
+core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
+                                  std::shared_ptr<Applied> applied, const RunLimits& limits,
+                                  const PolygonFinder& /*find*/) {
+    const auto done = std::make_shared<LocksDone>();
+    done->locked = locks.locked;
+    Guard guard(tin, applied->undo);
+    core::Errors errors;
+    for (std::size_t s = 0; s < locks.shapes.size(); ++s) {
+        for (std::size_t p = 0; p < locks.shapes[s].paths.size(); ++p) {
+            if (limits.cancelled && limits.cancelled()) {
+                return core::Error{core::ErrorCode::Cancelled, "the request was cancelled", {}};
+            }
+            const core::Path& path = locks.shapes[s].paths[p];
+            applied->undo.emplace_back(core::Surgery(tin).commit());  // of nothing: room first
+            core::Undo undo;
+            auto report = core::lock_along(tin, path, locks.reach, locks.locked, &undo);
+            if (report) {
+                applied->undo.back() = std::move(undo.front());
+                done->paths.push_back(std::move(*report));
+            } else if (found_nothing(report.errors()) && !limits.must_find) {
+                done->paths.push_back({0, 0, 0.0, {path.points}});
+            } else {
+                for (core::Error& error : report.errors()) {
+                    if (errors.size() >= core::kMaxFaults) break;
+                    error.place.shape = s;
+                    error.place.path = p;
+                    errors.push_back(std::move(error));
+                }
+            }
+        }
+    }
+    if (!errors.empty()) return errors;
+    applied->written = std::make_shared<SlotChanges>(slot_changes(tin, applied->undo));
+    applied->report = std::make_shared<core::Report>();
+    applied->lasting_bytes = bytes_of(locks, *done);
+    applied->record_bytes = bytes_of(applied->undo, *applied->written);
+    applied->locks = done;
     guard.keep();
     return AppliedPtr(std::move(applied));
 }
@@ -119,6 +182,9 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const EditOperation& edit,
 bool names(const PolygonsOperation&, std::string_view) {
     return false;
 }
+bool names(const LocksOperation&, std::string_view) {
+    return false;
+}
 
 bool names(const EditOperation& edit, std::string_view id) {
     return edit.asked.polygon == id;
@@ -137,12 +203,20 @@ Remainder without(const PolygonsOperation& polygons, const OperationPtr& whole,
     return {true, std::make_shared<const Operation>(std::move(rest))};
 }
 
+Remainder without(const LocksOperation&, const OperationPtr& whole, std::string_view) {
+    return {false, whole};
+}
+
 Remainder without(const EditOperation&, const OperationPtr& whole, std::string_view) {
     return {false, whole};
 }
 
 const std::vector<std::string>& ids_of(const PolygonsOperation& polygons) {
     return polygons.ids;
+}
+const std::vector<std::string>& ids_of(const LocksOperation&) {
+    static const std::vector<std::string> kNone;
+    return kNone;
 }
 
 const std::vector<std::string>& ids_of(const EditOperation&) {

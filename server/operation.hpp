@@ -15,6 +15,7 @@
 #include "core/edit/region_edit.hpp"
 #include "core/integrate/integrator.hpp"
 #include "server/delta.hpp"
+#include "server/locks.hpp"
 #include "server/polygon.hpp"
 
 namespace tinsmith::server {
@@ -28,15 +29,19 @@ struct EditOperation {
 
 /// What a session was told to do, whole enough to be done again. Each kind is one alternative; the
 /// functions below say what a kind has to know of itself.
-using Operation = std::variant<PolygonsOperation, EditOperation>;
+using Operation = std::variant<PolygonsOperation, LocksOperation, EditOperation>;
 using OperationPtr = std::shared_ptr<const Operation>;
 
 /// What one run of an operation may cost. Never kept with the operation.
 struct RunLimits {
     std::function<bool()> cancelled = {};
     std::function<double()> clock_ms = {};
+    std::function<void(double)> progress = {};  ///< told now and then what share is done
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
+    /// Refuse an operation that finds nothing of what it is about. One that is run again and no
+    /// longer finds it does nothing, as the refused one would have done.
+    bool must_find = false;
 };
 
 /// An operation that the mesh holds, with all that takes it back bit for bit. Never changed once
@@ -45,6 +50,7 @@ struct Applied {
     std::uint64_t version = 0;  ///< of the session when it was first done
     OperationPtr operation;
     std::shared_ptr<const core::Report> report;     ///< of a polygons request, else null
+    std::shared_ptr<const LocksDone> locks;         ///< of a locks request, else null
     std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit, else null
     core::Undo undo;
     std::shared_ptr<const SlotChanges> written;

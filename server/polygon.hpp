@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -46,6 +47,16 @@ struct Polygon {
     std::size_t shape = 0;       ///< its index in both
 
     const std::string& id() const { return request.ids[shape]; }
+    /// 7 of "p7".
+    std::uint64_t number() const {
+        std::uint64_t number = 0;
+        std::from_chars(id().data() + 1, id().data() + id().size(), number);
+        return number;
+    }
+    bool has_inside() const {
+        return origin().type == api::GeometryType::Polygon ||
+               origin().type == api::GeometryType::MultiPolygon;
+    }
     const PolygonOrigin& origin() const { return request.origins[shape]; }
     const core::Shape& outline() const { return request.shapes[shape]; }
     const core::ShapeReport& own_report() const { return report.shapes[shape]; }

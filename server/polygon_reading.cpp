@@ -7,6 +7,7 @@
 
 #include "api/crs.hpp"
 #include "api/formats/geojson_elevations.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -111,21 +112,23 @@ api::Faults faults_of(const core::Errors& errors, const std::vector<api::Request
 
 void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping) {
     const auto start = Clock::now();
-    const auto most = std::chrono::duration<double>(limits.max_edit_seconds);
     edit.max_triangles = limits.max_triangles;
     edit.options.max_crossings = limits.max_crossings;
     edit.options.clock_ms = [start] {
         return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     };
-    edit.options.cancelled = [start, most, &stopping] {
-        return stopping.load(std::memory_order_relaxed) || Clock::now() - start > most;
-    };
+    edit.options.cancelled = deadline(limits, stopping);
+    edit.options.progress = stage_progress();
 }
 
 RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping) {
     PolygonEdit edit;
     set_budgets(edit, limits, stopping);
-    return {std::move(edit.options.cancelled), std::move(edit.options.clock_ms)};
+    RunLimits run;
+    run.cancelled = std::move(edit.options.cancelled);
+    run.clock_ms = std::move(edit.options.clock_ms);
+    run.progress = std::move(edit.options.progress);
+    return run;
 }
 
 }  // namespace tinsmith::server

@@ -2,7 +2,6 @@
 #include "server/questions.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -91,6 +90,30 @@ PartOutcome part_of(Ground ground, const api::VolumeRequest& request,
     return Part{std::move(cutout->tin), std::move(cutout->region.triangles), cutout->shape_area};
 }
 
+/// What is compared with, where it is no plane.
+struct Surface {
+    core::Tin tin;
+    std::uint64_t version = 0;
+};
+using SurfaceOutcome = std::variant<Surface, VersionGone, VersionAhead, core::Errors>;
+
+SurfaceOutcome surface_of(const Session& session, const api::Against& against, const Session* other,
+                          const std::function<bool()>& cancelled) {
+    const auto* earlier = std::get_if<api::EarlierVersion>(&against);
+    if (earlier == nullptr) {
+        Ground ground = copy_ground(*other);
+        return Surface{std::move(ground.tin), ground.version};
+    }
+    RunLimits limits;
+    limits.cancelled = cancelled;
+    limits.progress = stage_progress();
+    auto tin = session.tin_at(earlier->version, limits);
+    if (const auto* gone = std::get_if<VersionGone>(&tin)) return *gone;
+    if (const auto* ahead = std::get_if<VersionAhead>(&tin)) return *ahead;
+    if (auto* errors = std::get_if<core::Errors>(&tin)) return std::move(*errors);
+    return Surface{std::move(std::get<core::Tin>(tin)), earlier->version};
+}
+
 /// What rounding leaves of two equal areas counts as nothing.
 double left_out(double asked, double compared) {
     constexpr double kRounding = 1e-10;
@@ -99,15 +122,6 @@ double left_out(double asked, double compared) {
 }
 
 }  // namespace
-
-std::function<bool()> deadline(const Limits& limits, const std::atomic<bool>& stopping) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const auto most = std::chrono::duration<double>(limits.max_edit_seconds);
-    return [start, most, &stopping] {
-        return stopping.load(std::memory_order_relaxed) || Clock::now() - start > most;
-    };
-}
 
 SpotAnswer spot_in(const Session& session, core::Point2 p) {
     return session.look(
@@ -150,22 +164,38 @@ VolumeOutcome volume_in(const Session& session, const api::VolumeRequest& reques
     Ground ground = copy_ground(session, request.polygon_id);
     VolumeAnswer answer;
     answer.version = ground.version;
+    begin_stage(0.5);
     auto found = part_of(std::move(ground), request,
-                         {limits.max_crossings, limits.max_triangles, cancelled});
+                         {limits.max_crossings, limits.max_triangles, cancelled, stage_progress()});
     if (auto* errors = std::get_if<core::Errors>(&found)) return std::move(*errors);
     if (const auto* fault = std::get_if<PolygonFault>(&found)) return *fault;
     const Part& part = std::get<Part>(found);
     if (const auto* plane = std::get_if<core::Plane>(&request.against)) {
         answer.volume = core::volume_against(part.tin, part.triangles, *plane);
     } else {
-        const Ground theirs = copy_ground(*other);
-        answer.other_version = theirs.version;
-        auto volume = core::volume_between(part.tin, part.triangles, theirs.tin, cancelled);
+        begin_stage(0.2);
+        auto theirs = surface_of(session, request.against, other, cancelled);
+        if (const auto* gone = std::get_if<VersionGone>(&theirs)) return *gone;
+        if (const auto* ahead = std::get_if<VersionAhead>(&theirs)) return *ahead;
+        if (auto* errors = std::get_if<core::Errors>(&theirs)) return std::move(*errors);
+        const Surface& surface = std::get<Surface>(theirs);
+        answer.other_version = surface.version;
+        begin_stage(1.0);
+        auto volume = core::volume_between(part.tin, part.triangles, surface.tin, cancelled,
+                                           stage_progress());
         if (!volume) return std::move(volume.errors());
         answer.volume = *volume;
     }
     answer.area_left_out = left_out(part.area, answer.volume.area);
     return answer;
+}
+
+std::size_t volume_bytes(const Session& session, const api::VolumeRequest& request,
+                         const Session* other) {
+    std::size_t bytes = session.mesh_bytes();
+    if (other != nullptr) bytes += other->mesh_bytes();
+    if (std::holds_alternative<api::EarlierVersion>(request.against)) bytes += session.mesh_bytes();
+    return bytes;
 }
 
 }  // namespace tinsmith::server

@@ -17,14 +17,9 @@
 #include "core/types/result.hpp"
 #include "server/limits.hpp"
 #include "server/session.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
-
-/// Points of one profile at most, beside what `max_crossings` says: what an answer can carry.
-inline constexpr std::uint64_t kMaxProfileCrossings = 1'000'000;
-
-/// Points of one question for elevations: what may hold an edit up.
-inline constexpr std::size_t kMaxPoints = 100'000;
 
 /// The surface at positions, of one version.
 struct SpotsAnswer {
@@ -51,11 +46,8 @@ struct VolumeAnswer {
 };
 
 using ProfileOutcome = std::variant<ProfileAnswer, core::Errors>;
-using VolumeOutcome = std::variant<VolumeAnswer, core::Errors, PolygonFault>;
-
-/// True from the time on that the limits allow for one request, or when the service stops.
-/// Requires: `stopping` outlives it.
-std::function<bool()> deadline(const Limits& limits, const std::atomic<bool>& stopping);
+using VolumeOutcome =
+    std::variant<VolumeAnswer, core::Errors, PolygonFault, VersionGone, VersionAhead>;
 
 // Each holds a session's readers' lock while it looks at the mesh, or copies it for longer work;
 // never two at the same time.
@@ -64,6 +56,10 @@ SpotAnswer spot_in(const Session& session, core::Point2 p);
 SpotsAnswer spots_in(const Session& session, std::span<const core::Point2> points);
 ProfileOutcome profile_in(const Session& session, std::span<const core::Point2> line,
                           const core::ProfileLimits& limits);
+
+/// About what `volume_in` takes for its copies of meshes.
+std::size_t volume_bytes(const Session& session, const api::VolumeRequest& request,
+                         const Session* other);
 
 /// Works on copies of the meshes. Requires: `other` where the request names another session.
 VolumeOutcome volume_in(const Session& session, const api::VolumeRequest& request,

@@ -12,7 +12,18 @@ void take_back_all(core::Tin& tin, std::span<const AppliedPtr> taken) {
         core::take_back(tin, (*applied)->undo);
 }
 
-/// A failure leaves what was run before it in the mesh.
+}  // namespace
+
+RunLimits limits_of_part(const RunLimits& limits, std::size_t index, std::size_t count) {
+    RunLimits part = limits;
+    if (limits.progress) {
+        part.progress = [tell = limits.progress, index, count](double share) {
+            tell((static_cast<double>(index) + share) / static_cast<double>(count));
+        };
+    }
+    return part;
+}
+
 Replayed run_all(core::Tin& tin, std::span<const Rerun> wanted, const RunLimits& limits,
                  const PolygonFinder& find) {
     std::vector<AppliedPtr> done;
@@ -23,15 +34,15 @@ Replayed run_all(core::Tin& tin, std::span<const Rerun> wanted, const RunLimits&
             if (auto polygon = polygon_of(**applied, id)) return polygon;
         return find(id);
     };
-    for (const Rerun& rerun : wanted) {
-        auto applied = run(tin, rerun.version, rerun.operation, limits, find_here);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const Rerun& rerun = wanted[i];
+        auto applied = run(tin, rerun.version, rerun.operation,
+                           limits_of_part(limits, i, wanted.size()), find_here);
         if (!applied) return ReplayFailure{rerun.version, std::move(applied.errors())};
         done.push_back(std::move(*applied));
     }
     return done;
 }
-
-}  // namespace
 
 Replayed replace_newest(core::Tin& tin, std::span<const AppliedPtr> taken,
                         std::span<const Rerun> wanted, const RunLimits& limits,

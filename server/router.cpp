@@ -80,20 +80,23 @@ Router::Router(std::vector<Route> routes) {
     }
 }
 
-Response Router::handle(const Request& request) const {
-    Response response;
+Response answer_safely(const Request& request, const std::function<Response()>& answer) {
     try {
-        response = dispatch(request);
+        return answer();
     } catch (const std::bad_alloc&) {
-        response = refuse(request, api::ProblemType::OutOfMemory,
-                          "The server has no memory left for this; nothing was changed. Delete "
-                          "sessions that are not needed, or send less.");
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "The server has no memory left for this; nothing was changed. Delete "
+                      "sessions that are not needed, or send less.");
     } catch (const std::exception& error) {
         log_error("request " + request.id + " failed: " + error.what());
-        response = refuse(request, api::ProblemType::Internal,
-                          "A defect of the server, not of the request. Report it with the request "
-                          "id; the log has the details.");
+        return refuse(request, api::ProblemType::Internal,
+                      "A defect of the server, not of the request. Report it with the request "
+                      "id; the log has the details.");
     }
+}
+
+Response Router::handle(const Request& request) const {
+    Response response = answer_safely(request, [&] { return dispatch(request); });
     response.with("X-Request-Id", request.id);
     return response;
 }

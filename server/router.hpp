@@ -16,6 +16,10 @@ using PathArguments = std::vector<std::string>;
 
 using Handler = std::function<Response(const Request&, const PathArguments&)>;
 
+/// What `answer` gives; where it throws, a 500 (507 when memory ran out) that tells nothing of the
+/// exception.
+Response answer_safely(const Request& request, const std::function<Response()>& answer);
+
 /// One line of the route table.
 struct Route {
     std::string method;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <utility>
 
 #include "api/formats/read_limits.hpp"
+#include "server/jobs.hpp"
 #include "server/kept_answers.hpp"
 #include "server/limits.hpp"
 #include "server/mesh_cache.hpp"
@@ -20,12 +22,15 @@ struct Services {
           policy(std::move(the_policy)),
           sessions(the_limits),
           meshes(the_limits.mesh_cache),
-          answers({.bytes = the_limits.kept_answers}) {}
+          answers({.bytes = the_limits.kept_answers}),
+          jobs({the_limits.job_threads, the_limits.max_queued_jobs, the_limits.max_jobs,
+                the_limits.job_bytes, std::chrono::seconds(the_limits.job_seconds)}) {}
 
     api::ReadLimits read_limits() const {
         api::ReadLimits read;
         read.max_vertices = limits.max_vertices;
         read.max_triangles = limits.max_triangles;
+        read.progress = reading_progress();
         return read;
     }
 
@@ -41,6 +46,7 @@ struct Services {
     MeshCache meshes;                   ///< encoded
     KeptAnswers answers;                ///< for retries by key
     std::atomic<bool> stopping{false};  ///< edits under way give up when it turns true
+    Jobs jobs;                          ///< last: their work uses all of the above
 };
 
 }  // namespace tinsmith::server

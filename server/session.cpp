@@ -24,8 +24,13 @@ std::vector<std::string> new_ids(std::uint64_t first, std::size_t count) {
 RunLimits limits_of(const PolygonEdit& edit, const core::Tin& tin) {
     const std::size_t room =
         edit.max_triangles - std::min(edit.max_triangles, tin.triangle_count());
-    return {edit.options.cancelled, edit.options.clock_ms, edit.options.max_crossings,
-            std::min<std::uint64_t>(edit.options.max_new_triangles, room)};
+    RunLimits limits;
+    limits.cancelled = edit.options.cancelled;
+    limits.clock_ms = edit.options.clock_ms;
+    limits.progress = edit.options.progress;
+    limits.max_crossings = edit.options.max_crossings;
+    limits.max_new_triangles = std::min<std::uint64_t>(edit.options.max_new_triangles, room);
+    return limits;
 }
 
 /// The edit as it is kept. Its budgets stay behind.
@@ -34,6 +39,7 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
     const core::IntegrateOptions free;
     options.cancelled = nullptr;
     options.clock_ms = nullptr;
+    options.progress = nullptr;
     options.max_crossings = free.max_crossings;
     options.max_new_triangles = free.max_new_triangles;
     return std::make_shared<const Operation>(
@@ -87,6 +93,11 @@ core::Tin Session::copy_tin() const {
     return tin_;
 }
 
+std::size_t Session::mesh_bytes() const {
+    const std::lock_guard lock(view_mutex_);
+    return mesh_bytes_;
+}
+
 DrapedCopy Session::draped(std::optional<std::string_view> id) const {
     const auto lock = lock_to_read();
     DrapedCopy copy{{}, version()};
@@ -120,7 +131,8 @@ void Session::refresh_view() noexcept {
     view_.triangles = tin_.triangle_count();
     view_.bounds = tin_.bounds();
     view_.polygons = history_.polygon_count();
-    view_.memory_bytes = tin_.memory_bytes() + history_.memory_bytes();
+    mesh_bytes_ = tin_.memory_bytes();
+    view_.memory_bytes = mesh_bytes_ + history_.memory_bytes();
 }
 
 core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kind,
@@ -138,11 +150,13 @@ core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kin
     change.version = made;
     change.kind = kind;
     change.polygons = std::move(polygons);
+    change.step = Exchange{step.first, {}, step.added};
     change.written.resize(1);
     history_.prepare(1);
     auto applied = run(tin_, made, std::move(operation), limits, polygon_finder());
     if (!applied) return applied;
-    change.report = (*applied)->report;
+    if (kind == ChangeKind::Polygons) change.report = (*applied)->report;
+    change.locks = (*applied)->locks;
     change.answer = (*applied)->answer;
     change.vertices = tin_.vertex_count();
     change.triangles = tin_.triangle_count();

@@ -19,6 +19,7 @@
 #include "server/change.hpp"
 #include "server/edit.hpp"
 #include "server/history.hpp"
+#include "server/locks.hpp"
 #include "server/polygon.hpp"
 
 namespace tinsmith::server {
@@ -45,6 +46,8 @@ struct DrapedCopy {
     bool more = false;  ///< others follow these
 };
 
+using VersionOutcome = std::variant<core::Tin, VersionGone, VersionAhead, core::Errors>;
+
 /// One terrain in memory: its mesh, its version and its polygons.
 ///
 /// Laws: one writer at a time, readers beside each other; an edit that fails leaves mesh, version,
@@ -66,6 +69,14 @@ class Session {
     MeshCopy copy_mesh() const;
     /// The mesh with all that the core knows of it.
     core::Tin copy_tin() const;
+    /// The same as it was at a version, made on a copy: operations are taken back and, where they
+    /// were undone or removed since, run again. Requires nothing of the session but its lock for
+    /// the time of a copy. Errors: cancelled.
+    VersionOutcome tin_at(std::uint64_t version, const RunLimits& limits) const;
+    /// Whether `tin_at` has it; nothing: it does.
+    std::variant<std::monostate, VersionGone, VersionAhead> missing(std::uint64_t version) const;
+    /// Bytes of a copy of the mesh. Waits for no edit.
+    std::size_t mesh_bytes() const;
     /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
     /// it. Holds the readers' lock while their regions are found.
     DrapedCopy draped(std::optional<std::string_view> id = {}) const;
@@ -82,6 +93,11 @@ class Session {
     /// Requires: shapes and origins of one length.
     PolygonOutcome integrate(PolygonEdit edit);
 
+    /// Locks or unlocks the edges along lines: all of them or none. Dry runs as above.
+    LocksOutcome set_locks(LocksEdit edit, RunLimits limits);
+    /// At most `limit` locked edges, in order, those after one with this number of a side; nothing:
+    /// from the first on. Cost: the whole mesh.
+    LockedCopy locked_after(std::optional<std::uint32_t> side, std::size_t limit) const;
     /// Edits the mesh inside a polygon. A dry run works on a copy and holds no writer's lock.
     EditOutcome edit(PendingEdit edit);
 
@@ -93,7 +109,8 @@ class Session {
     /// operations without it; edits that name it are refused, or go too. An edit itself, for undo.
     ChangeOutcome remove_polygon(std::string_view id, bool cascade, const ChangeRequest& request);
 
-    HistoryCopy history() const;
+    /// At most `limit` changes, those that came after a version.
+    HistoryCopy history(std::uint64_t after = 0, std::size_t limit = SIZE_MAX) const;
     /// How that version came about.
     std::variant<ChangeCopy, VersionGone, VersionAhead> change_at(std::uint64_t version) const;
     /// What leads from that version to the mesh as it is now. 0: the whole mesh.
@@ -102,8 +119,10 @@ class Session {
 
   private:
     PolygonOutcome integrate_dry(const PolygonEdit& edit) const;
+    LocksOutcome lock_dry(const LocksEdit& edit, const RunLimits& limits) const;
     EditOutcome edit_dry(const PendingEdit& edit) const;
-    /// Runs a new operation and keeps it as the next version. Requires: the writer's lock.
+    /// Runs one operation more and keeps it as the next version. An error leaves everything as it
+    /// was. Requires: the writer's lock.
     core::Result<AppliedPtr> perform(OperationPtr operation, ChangeKind kind,
                                      std::vector<std::string> polygons, const RunLimits& limits);
     /// Of the operations that the mesh holds now. Requires: a lock, for as long as it is in use.
@@ -129,6 +148,7 @@ class Session {
 
     mutable std::mutex view_mutex_;  ///< guards the view; taken last and never held for long
     api::SessionView view_;
+    std::size_t mesh_bytes_ = 0;
 };
 
 }  // namespace tinsmith::server

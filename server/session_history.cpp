@@ -17,6 +17,8 @@ std::string_view word_of(ChangeKind kind) {
             return "created";
         case ChangeKind::Polygons:
             return "polygons";
+        case ChangeKind::Locks:
+            return "locks";
         case ChangeKind::Edit:
             return "edit";
         case ChangeKind::Undo:
@@ -117,23 +119,25 @@ ChangeOutcome Session::replace(const ChangeRequest& request, Replacement replace
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
     history_.prepare(replacement.wanted.size());
     const auto taken = std::span(history_.applied()).subspan(replacement.first - history_.base());
+    Exchange step{replacement.first, {}, replacement.wanted};
+    for (const AppliedPtr& old : taken)
+        step.removed.push_back({old->version, old->operation});
     Edit edit;  // for a new one only: undo and redo have theirs
     if (replacement.kind == ChangeKind::Removal) {
-        edit = {before + 1, replacement.first, {}, replacement.wanted, replacement.polygons, 0, 0};
-        for (const AppliedPtr& old : taken) {
-            edit.removed.push_back({old->version, old->operation});
+        edit = {before + 1, step.first, step.removed, step.added, replacement.polygons, 0, 0};
+        for (const AppliedPtr& old : taken)
             edit.removed_bytes += old->lasting_bytes;
-        }
     }
     Change change;
     change.version = before + 1;
     change.kind = replacement.kind;
     change.of = replacement.of;
     change.polygons = replacement.polygons;
+    change.step = std::move(step);
     change.written.reserve(taken.size() + replacement.wanted.size());
     for (const AppliedPtr& old : taken)
         change.written.push_back(old->written);
-    ChangeResult result{{view_of(change), nullptr, nullptr}, std::nullopt};
+    ChangeResult result{{view_of(change), nullptr, nullptr, nullptr}, std::nullopt};
     auto replayed =
         replace_newest(tin_, taken, replacement.wanted, request.limits, polygon_finder());
     if (auto* failure = std::get_if<ReplayFailure>(&replayed)) return std::move(*failure);
@@ -156,14 +160,19 @@ ChangeOutcome Session::replace(const ChangeRequest& request, Replacement replace
     return result;
 }
 
-HistoryCopy Session::history() const {
+HistoryCopy Session::history(std::uint64_t after, std::size_t limit) const {
     const auto lock = lock_to_read();
     HistoryCopy copy;
     copy.version = version();
+    copy.oldest = history_.changes().front().version;
     if (const Edit* edit = history_.undoable()) copy.undo = edit->version;
     if (const Edit* edit = history_.redoable()) copy.redo = edit->version;
-    for (const Change& change : history_.changes())
+    for (const Change& change : history_.changes()) {
+        if (change.version <= after) continue;
+        copy.more = copy.changes.size() == limit;
+        if (copy.more) break;
         copy.changes.push_back(view_of(change));
+    }
     return copy;
 }
 
@@ -172,7 +181,7 @@ std::variant<ChangeCopy, VersionGone, VersionAhead> Session::change_at(std::uint
     if (wanted > version()) return VersionAhead{version()};
     const Change* change = history_.change_at(wanted);
     if (change == nullptr) return VersionGone{history_.changes().front().version};
-    return ChangeCopy{view_of(*change), change->report, change->answer};
+    return ChangeCopy{view_of(*change), change->report, change->locks, change->answer};
 }
 
 std::variant<api::MeshDelta, VersionGone, VersionAhead> Session::delta_since(

@@ -72,8 +72,16 @@ std::size_t SessionStore::memory_bytes() const {
     return sum_of_memory();
 }
 
+std::optional<BorrowedMemory> SessionStore::borrow(std::size_t bytes) {
+    const std::unique_lock lock(mutex_);
+    if (sum_of_memory() + bytes > limits_.max_memory_bytes) return std::nullopt;
+    borrowed_ += bytes;
+    return std::optional<BorrowedMemory>(std::in_place, borrowed_, bytes);
+}
+
+/// Requires: the lock.
 std::size_t SessionStore::sum_of_memory() const {
-    std::size_t sum = 0;
+    std::size_t sum = borrowed_;
     for (const auto& [id, session] : sessions_)
         sum += session->view().memory_bytes;
     return sum;

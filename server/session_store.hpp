@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
 #include <shared_mutex>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,6 +26,20 @@ enum class StoreRefusal {
 };
 
 enum class Removal { Done, Gone, OtherVersion };
+
+/// Memory for copies that a request works on, given back with the object.
+class BorrowedMemory {
+  public:
+    BorrowedMemory(std::atomic<std::size_t>& sum, std::size_t bytes) : sum_(&sum), bytes_(bytes) {}
+    BorrowedMemory(BorrowedMemory&& other) noexcept
+        : sum_(other.sum_), bytes_(std::exchange(other.bytes_, 0)) {}
+    BorrowedMemory& operator=(BorrowedMemory&&) = delete;
+    ~BorrowedMemory() { *sum_ -= bytes_; }
+
+  private:
+    std::atomic<std::size_t>* sum_;
+    std::size_t bytes_;
+};
 
 /// All sessions of this process, by id. A session that is removed lives on for those who still
 /// hold it. Lookups take a shared lock for the time of a map search.
@@ -54,14 +71,19 @@ class SessionStore {
 
     std::size_t size() const;
 
-    /// Of all sessions together. Waits for no edit.
+    /// Of all sessions together and of what is borrowed. Waits for no edit.
     std::size_t memory_bytes() const;
+
+    /// Memory for copies; nothing where Limits::max_memory_bytes would be passed. The store
+    /// outlives it.
+    std::optional<BorrowedMemory> borrow(std::size_t bytes);
 
   private:
     Added keep(std::shared_ptr<Session> session);
     std::size_t sum_of_memory() const;
 
     const Limits limits_;
+    std::atomic<std::size_t> borrowed_{0};
     mutable std::shared_mutex mutex_;  ///< guards the map, not the sessions
     std::map<std::string, std::shared_ptr<Session>> sessions_;
 };

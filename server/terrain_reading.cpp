@@ -6,6 +6,7 @@
 #include "api/formats/geotiff.hpp"
 #include "api/formats/terrain_json.hpp"
 #include "core/mesh/build.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -37,12 +38,21 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     return is_tiff ? TerrainFormat::GeoTiff : TerrainFormat::Json;
 }
 
+std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
+    if (media_type == "application/json") return TerrainFormat::Json;
+    if (media_type == "image/tiff" || media_type == "image/geotiff") return TerrainFormat::GeoTiff;
+    return std::nullopt;
+}
+
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::ReadLimits& limits) {
+    begin_stage(0.4);
     auto terrain = format == TerrainFormat::GeoTiff ? api::read_geotiff(bytes, limits)
                                                     : api::read_terrain_json(bytes, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
+    begin_stage(0.6);
     auto tin = core::build_tin(terrain->mesh);
+    if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
     if (!tin) {
         api::Faults faults;
         auto kind = api::FaultKind::Invalid;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,9 @@ enum class TerrainFormat { Json, GeoTiff };
 
 /// By the first bytes: a TIFF says so, anything else is read as JSON.
 TerrainFormat terrain_format_of(std::string_view bytes);
+
+/// By a media type, lower-case; nothing where that is no terrain's.
+std::optional<TerrainFormat> terrain_format_named(std::string_view media_type);
 
 /// A terrain that was read and its mesh built; `about.mesh` is empty by then.
 struct LoadedTerrain {

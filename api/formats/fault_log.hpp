@@ -43,6 +43,8 @@ class FaultLog {
                 return 2;
             case FaultKind::Syntax:
                 return 3;
+            case FaultKind::Stopped:
+                return 4;
         }
         return 0;
     }

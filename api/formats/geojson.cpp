@@ -10,6 +10,7 @@
 #include "api/formats/json_reader.hpp"
 #include "api/formats/json_reader_text.hpp"
 #include "api/formats/json_reader_values.hpp"
+#include "api/formats/options_reader.hpp"
 
 namespace tinsmith::api {
 
@@ -23,8 +24,7 @@ using json::Reader;
 using json::Scalar;
 using json::Value;
 
-constexpr std::size_t kMostOptions = 64;
-constexpr std::size_t kLongestText = 1000;  ///< of an option, an id
+constexpr std::size_t kLongestText = 1000;  ///< of an id
 
 /// What was read of a geometry; its "type" may be its last member.
 struct GeometryDraft {
@@ -60,52 +60,6 @@ class Id : public json::Text {
   private:
     std::string text_;
     std::string& out_;
-};
-
-/// The member "tinsmith": names and scalars.
-class Options : public Value, public Container {
-  public:
-    using Pairs = std::vector<std::pair<std::string, std::string>>;
-    explicit Options(Pairs& out) : option_(out) {}
-
-    Container* object(Reader&) override { return this; }
-    Value* member(Reader& reader, std::string_view name) override {
-        const bool repeated = std::any_of(option_.out.begin(), option_.out.end(),
-                                          [&](const auto& pair) { return pair.first == name; });
-        if (repeated) {
-            reader.fault("MEMBER_REPEATED", quoted(name) + " is here twice; give it once.");
-            return nullptr;
-        }
-        if (option_.out.size() == kMostOptions) {
-            reader.stop(FaultKind::Invalid,
-                        {"TOO_MANY_MEMBERS",
-                         "No more than " + std::to_string(kMostOptions) + " options are taken.",
-                         reader.pointer()});
-            return nullptr;
-        }
-        option_.out.emplace_back(name, "");
-        return &option_;
-    }
-
-  protected:
-    std::string_view expected() const override { return "an object of options"; }
-
-  private:
-    struct Option : Value {
-        explicit Option(Pairs& pairs) : out(pairs) {}
-        void scalar(Reader& reader, const Scalar& value) override {
-            if (value.kind == Scalar::Kind::Null) return Value::scalar(reader, value);
-            if (value.text.size() > kLongestText) {
-                return reader.fault("TEXT_TOO_LONG",
-                                    "At most " + std::to_string(kLongestText) + " bytes.");
-            }
-            out.back().second = json::plain_text(value);
-        }
-        std::string_view expected() const override { return "a text, a number, true or false"; }
-        Pairs& out;
-    };
-
-    Option option_;
 };
 
 /// The member "crs" of GeoJSON 2008: {"type": "name", "properties": {"name": "EPSG:32616"}}.
@@ -365,7 +319,7 @@ class Body : public Object {
     GeometryObject geometry_{feature_, coordinates_};
     FeatureList features_{request_.shapes, coordinates_};
     LegacyCrs crs_{request_.crs};
-    Options options_{request_.options};
+    json::OptionsReader options_{request_.options};
 };
 
 }  // namespace

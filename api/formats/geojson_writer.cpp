@@ -13,29 +13,16 @@ namespace {
 
 using Lines = std::span<const DrapedLine>;
 
-/// One element after the other, in brackets.
-template <typename Range, typename Append>
-void append_array(std::string& out, const Range& range, Append append) {
-    out.push_back('[');
-    bool first = true;
-    for (const auto& element : range) {
-        if (!first) out.push_back(',');
-        first = false;
-        append(out, element);
-    }
-    out.push_back(']');
-}
-
 void append_line(std::string& out, const DrapedLine& line) {
-    append_array(out, line.positions, json::append_position);
+    json::append_array(out, line.positions, json::append_position);
 }
 
 void append_lines(std::string& out, Lines lines) {
-    append_array(out, lines, append_line);
+    json::append_array(out, lines, append_line);
 }
 
 void append_points(std::string& out, Lines lines) {
-    append_array(out, lines, [](std::string& text, const DrapedLine& line) {
+    json::append_array(out, lines, [](std::string& text, const DrapedLine& line) {
         json::append_position(text, line.positions.front());
     });
 }
@@ -136,14 +123,14 @@ void append_members(std::string& out, const DrapedPolygon& polygon) {
     out += "}";
 }
 
+}  // namespace
+
 void append_crs(std::string& out, std::string_view crs) {
     if (crs.empty()) return;
     out += ",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":";
     json::append_text(out, crs);
     out += "}}";
 }
-
-}  // namespace
 
 std::string write_feature(const DrapedPolygon& polygon, std::string_view crs) {
     std::string out = "{";
@@ -158,7 +145,7 @@ std::string write_feature_collection(std::span<const DrapedPolygon> polygons,
     std::string out = "{\"type\":\"FeatureCollection\"";
     append_crs(out, crs);
     out += ",\"features\":";
-    append_array(out, polygons, [](std::string& text, const DrapedPolygon& polygon) {
+    json::append_array(out, polygons, [](std::string& text, const DrapedPolygon& polygon) {
         text += "{";
         append_members(text, polygon);
         text += "}";

@@ -48,4 +48,7 @@ struct DrapedPolygon {
 std::string write_feature(const DrapedPolygon& polygon, std::string_view crs);
 std::string write_feature_collection(std::span<const DrapedPolygon> polygons, std::string_view crs);
 
+/// Appends that member, with a comma in front.
+void append_crs(std::string& out, std::string_view crs);
+
 }  // namespace tinsmith::api

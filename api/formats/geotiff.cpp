@@ -320,6 +320,10 @@ std::optional<Refused> Raster::read_elevations() {
     // A row of blocks at a time, so that each block is decoded once.
     const int rows_at_once = std::clamp(block_height, 1, height);
     for (int row = 0; row < height; row += rows_at_once) {
+        if (limits_.progress && !limits_.progress(static_cast<double>(row) / height)) {
+            const Fault fault = reading_stopped();
+            return refused(FaultKind::Stopped, fault.code, fault.detail);
+        }
         const int rows = std::min(rows_at_once, height - row);
         // Only reserved, not touched, until its data is at hand: a header may promise anything.
         const std::size_t begin = grid_.elevations.size();

@@ -125,6 +125,11 @@ void Reader::stop(FaultKind kind, Fault fault) {
     stopped_ = true;
 }
 
+bool Reader::has_come_to(double share) {
+    if (!progress_(share)) stop(FaultKind::Stopped, reading_stopped());
+    return going();
+}
+
 Value* Reader::next_value() {
     if (depth_ == 0) return root_;
     Frame& frame = frames_[depth_ - 1];

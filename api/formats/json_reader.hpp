@@ -78,7 +78,8 @@ class Container {
 class Reader {
   public:
     /// Requires: `root` outlives the reader.
-    Reader(Value& root, const ReadLimits& limits) : root_(&root), log_(limits.max_faults) {}
+    Reader(Value& root, const ReadLimits& limits)
+        : root_(&root), log_(limits.max_faults), progress_(limits.progress) {}
 
     /// JSON Pointer of the value being read. Names of more than 200 bytes are cut in it.
     std::string pointer() const;
@@ -90,6 +91,10 @@ class Reader {
     void stop(FaultKind kind, Fault fault);
 
     FaultLog& log() { return log_; }
+
+    /// Told how much has been read. False: stop reading.
+    bool has_come_to(double share);
+    bool is_watched() const { return progress_ != nullptr; }
 
     // Events in the body's order. False: enough, stop reading.
     bool take_scalar(const Scalar& value);
@@ -117,6 +122,7 @@ class Reader {
     std::size_t depth_ = 0;
     bool stopped_ = false;
     FaultLog log_;
+    const std::function<bool(double)> progress_;
 };
 
 /// Reads a body into `root`. Afterwards the reader's log says whether it was as expected.

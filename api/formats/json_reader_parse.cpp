@@ -2,6 +2,7 @@
 // The one file that knows the JSON library's parser: its events become the reader's.
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -41,9 +42,39 @@ std::string place(std::string_view body, std::size_t read) {
            " (byte " + std::to_string(at + 1) + ")";
 }
 
+/// Goes through the body and leaves behind where it is.
+class Walker {
+  public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    Walker(const char* at, const char** seen) : at_(at), seen_(seen) {}
+    reference operator*() const { return *at_; }
+    Walker& operator++() {
+        *seen_ = ++at_;
+        return *this;
+    }
+    Walker operator++(int) {
+        const Walker before = *this;
+        ++*this;
+        return before;
+    }
+    friend bool operator==(const Walker& a, const Walker& b) { return a.at_ == b.at_; }
+
+  private:
+    const char* at_;
+    const char** seen_;
+};
+
 class Events {
   public:
     Events(std::string_view body, Reader& reader) : body_(body), reader_(reader) {}
+
+    /// Where the parser is, for `Walker`.
+    const char** parser_place() { return &at_; }
 
     bool null() { return reader_.take_scalar({}); }
     bool boolean(bool value) {
@@ -57,21 +88,21 @@ class Events {
         scalar.kind = Scalar::Kind::Negative;
         scalar.negative = value;
         scalar.number = static_cast<double>(value);
-        return reader_.take_scalar(scalar);
+        return reader_.take_scalar(scalar) && goes_on();
     }
     bool number_unsigned(std::uint64_t value) {
         Scalar scalar;
         scalar.kind = Scalar::Kind::Natural;
         scalar.natural = value;
         scalar.number = static_cast<double>(value);
-        return reader_.take_scalar(scalar);
+        return reader_.take_scalar(scalar) && goes_on();
     }
     bool number_float(double value, const std::string& written) {
         Scalar scalar;
         scalar.kind = Scalar::Kind::Real;
         scalar.number = value;
         scalar.text = written;
-        return reader_.take_scalar(scalar);
+        return reader_.take_scalar(scalar) && goes_on();
     }
     bool string(const std::string& value) {
         Scalar scalar;
@@ -83,7 +114,7 @@ class Events {
     bool start_object(std::size_t) { return reader_.open(false); }
     bool key(const std::string& name) { return reader_.take_name(name); }
     bool end_object() { return reader_.close(); }
-    bool start_array(std::size_t) { return reader_.open(true); }
+    bool start_array(std::size_t) { return reader_.open(true) && goes_on(); }
     bool end_array() { return reader_.close(); }
 
     bool parse_error(std::size_t read, const std::string&, const nlohmann::json::exception& error) {
@@ -99,8 +130,18 @@ class Events {
     }
 
   private:
+    /// What is long is made of many arrays or numbers.
+    bool goes_on() {
+        constexpr std::size_t kAskEvery = 4096;
+        if (!reader_.is_watched() || ++asked_ % kAskEvery != 0) return true;
+        const auto read = static_cast<double>(at_ - body_.data());
+        return reader_.has_come_to(read / static_cast<double>(body_.size()));
+    }
+
     std::string_view body_;
     Reader& reader_;
+    const char* at_ = body_.data();
+    std::size_t asked_ = 0;
 };
 
 }  // namespace
@@ -111,7 +152,9 @@ void read(std::string_view body, Reader& reader) {
         return;
     }
     Events events(body, reader);
-    nlohmann::json::sax_parse(body.begin(), body.end(), &events);
+    const char* const end = body.data() + body.size();
+    nlohmann::json::sax_parse(Walker(body.data(), events.parser_place()),
+                              Walker(end, events.parser_place()), &events);
 }
 
 }  // namespace tinsmith::api::json

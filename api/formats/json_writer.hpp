@@ -40,4 +40,23 @@ inline void append_position(std::string& out, const core::Point3& p) {
     out.push_back(']');
 }
 
+/// One element after the other, in brackets; `append` takes the text and the element.
+template <typename Range, typename Append>
+void append_array(std::string& out, const Range& range, Append append) {
+    out.push_back('[');
+    bool first = true;
+    for (const auto& element : range) {
+        if (!first) out.push_back(',');
+        first = false;
+        append(out, element);
+    }
+    out.push_back(']');
+}
+
+/// [a,b]
+template <typename Number>
+void append_pair(std::string& out, const std::array<Number, 2>& pair) {
+    append_array(out, pair, append_number<Number>);
+}
+
 }  // namespace tinsmith::api::json

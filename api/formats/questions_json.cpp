@@ -40,19 +40,22 @@ class PointsBody : public Object {
     TupleList<2> points_;
 };
 
-/// "version" is in the contract and not yet in the program.
-class NotYet : public Value {
+/// A whole number from 1 on.
+class Version : public Value {
   public:
-    void scalar(Reader& reader, const Scalar&) override {
-        reader.add(FaultKind::Unsupported,
-                   {"NOT_AVAILABLE",
-                    "Earlier versions are not kept by this version of the program: fork the "
-                    "session before an edit and compare with the fork.",
-                    reader.pointer()});
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (value.kind != Scalar::Kind::Natural || value.natural == 0) {
+            return Value::scalar(reader, value);
+        }
+        version_ = value.natural;
     }
+    std::uint64_t version() const { return version_; }
 
   protected:
-    std::string_view expected() const override { return "a version"; }
+    std::string_view expected() const override { return "a version, a whole number from 1 on"; }
+
+  private:
+    std::uint64_t version_ = 0;
 };
 
 class AgainstObject : public Object {
@@ -73,12 +76,15 @@ class AgainstObject : public Object {
         if (given != 1) {
             reader.fault(given == 0 ? "MEMBER_MISSING" : "CONTRADICTION",
                          "Give one thing to compare with: \"elevation\", or \"plane\" of three "
-                         "points, or \"slope\", \"azimuth\" and \"point\", or \"session\".");
+                         "points, or \"slope\", \"azimuth\" and \"point\", or \"session\", or "
+                         "\"version\".");
         }
         plane_.check(reader, *this);
         if (reader.log().size() != faults_before_) return;
         if (has("session")) {
             out_ = OtherSession{session_text_};
+        } else if (has("version")) {
+            out_ = EarlierVersion{version_.version()};
         } else if (const auto plane = plane_.take(reader, *this)) {
             out_ = *plane;
         }
@@ -90,7 +96,7 @@ class AgainstObject : public Object {
     std::string session_text_;
     json::PlaneMembers plane_;
     json::Text session_{session_text_};
-    NotYet version_;
+    Version version_;
 };
 
 /// A GeoJSON geometry with an inside.

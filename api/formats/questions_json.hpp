@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,11 +16,15 @@
 
 namespace tinsmith::api {
 
-/// What a surface is compared with. A version of the same session gets an alternative of its own.
+/// What a surface is compared with.
 struct OtherSession {
     std::string id;
 };
-using Against = std::variant<core::Plane, OtherSession>;
+/// Of the same session.
+struct EarlierVersion {
+    std::uint64_t version = 0;
+};
+using Against = std::variant<core::Plane, OtherSession, EarlierVersion>;
 
 /// A volume request as its body states it.
 struct VolumeRequest {
@@ -32,8 +37,8 @@ struct VolumeRequest {
 Parsed<std::vector<core::Point2>> read_points(std::string_view body, const ReadLimits& limits);
 
 /// Reads {"polygon"?: a GeoJSON geometry | an id, "against": one of {"elevation"}, {"plane"},
-/// {"slope", "azimuth", "point"}, {"session"}}. Names every fault; unknown members are faults, but
-/// for those of the geometry, which are foreign.
+/// {"slope", "azimuth", "point"}, {"session"}, {"version"}}. Names every fault; unknown members are
+/// faults, but for those of the geometry, which are foreign.
 Parsed<VolumeRequest> read_volume_request(std::string_view body, const ReadLimits& limits);
 
 /// Reads a GeoJSON LineString, as a geometry or a Feature. Names every fault.

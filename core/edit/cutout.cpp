@@ -27,6 +27,7 @@ Result<Region> cut_in(Tin& tin, const Shape& shape, Winding winding, const Cutou
     options.max_crossings = limits.max_crossings;
     options.max_new_triangles = limits.max_new_triangles;
     options.cancelled = limits.cancelled;
+    options.progress = limits.progress;
     auto report = integrate_ring(tin, shape, options);
     if (!report) return std::move(report.errors());
     const ShapeReport& found = report->shapes.front();

@@ -24,6 +24,7 @@ struct CutoutLimits {
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
     std::function<bool()> cancelled = {};
+    std::function<void(double)> progress = {};  ///< told now and then what share is done
 };
 
 /// Cuts the shape's closed paths into the mesh, which the caller gives away, and finds the inside.

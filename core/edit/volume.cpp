@@ -100,7 +100,8 @@ Volume volume_against(const Tin& tin, std::span<const TriangleId> triangles, con
 }
 
 Result<Volume> volume_between(const Tin& tin, std::span<const TriangleId> triangles,
-                              const Tin& other, const std::function<bool()>& cancelled) {
+                              const Tin& other, const std::function<bool()>& cancelled,
+                              const std::function<void(double)>& progress) {
     CutAndFill sums;
     if (triangles.empty()) return volume_of(sums, 0);
     std::uint64_t pairs = 0;
@@ -121,6 +122,8 @@ Result<Volume> volume_between(const Tin& tin, std::span<const TriangleId> triang
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (i % kBetweenQuestions == 0 && cancelled && cancelled())
             return Error{ErrorCode::Cancelled, "the comparison was stopped", {}};
+        if (i % kBetweenQuestions == 0 && progress)
+            progress(static_cast<double>(i) / static_cast<double>(triangles.size()));
         const Triangle2 plan = plan_of(tin, triangles[i]);
         const double base = tin.vertex(tin.triangle(triangles[i]).vertices[0]).z;
         const Facet ours = facet_of(tin, triangles[i], base);

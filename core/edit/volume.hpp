@@ -42,6 +42,7 @@ Volume volume_against(const Tin& tin, std::span<const TriangleId> triangles, con
 /// Cost: n log^2 n in the triangles, and linear in pairs whose boxes meet: about the pairs that
 /// overlap, times the same small number for all but long slanting triangles side by side.
 Result<Volume> volume_between(const Tin& tin, std::span<const TriangleId> triangles,
-                              const Tin& other, const std::function<bool()>& cancelled = {});
+                              const Tin& other, const std::function<bool()>& cancelled = {},
+                              const std::function<void(double)>& progress = {});
 
 }  // namespace tinsmith::core

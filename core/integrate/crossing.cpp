@@ -364,12 +364,12 @@ void March::count_crossing(Side edge) {
 void March::measure(VertexId v) {
     const Point2 p = tin_.plan(v);
     const AreaEstimate area = estimate_doubled_area(start_, end_, p);
-    const double known = std::min(tally_.max_plan_deviation, kUsualDrift * reach_of_rounding_);
+    const double known = std::min(tally_.max_plan_deviation, drift_.usual());
     if (std::fabs(area.value) + area.error <= known * length_ && is_beside_segment(p)) return;
     if (p == start_ || p == end_) return;
     const double distance = distance_to_segment(p, start_, end_);
     tally_.max_plan_deviation = std::max(tally_.max_plan_deviation, distance);
-    if (distance > kUsualDrift * reach_of_rounding_) drift_.stray(v, distance);
+    if (distance > drift_.usual()) drift_.stray(v, distance);
 }
 
 /// Whether p is between the ends of the input segment, along it.

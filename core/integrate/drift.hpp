@@ -14,16 +14,19 @@ namespace tinsmith::core {
 /// whole request.
 class Drift {
   public:
-    /// `first`: what the request's first new vertex will be.
-    explicit Drift(std::size_t first) : first_(first) {}
+    /// `first`: what the request's first new vertex will be. `usual`: what rounding one position
+    /// puts it off at most, so that no more than that has to be measured only rarely.
+    Drift(std::size_t first, double usual) : first_(first), usual_(usual), largest_bend_(usual) {}
+
+    double usual() const { return usual_; }
 
     /// Makes room for so many more vertices.
     void expect(std::size_t vertices) { nesting_.reserve(nesting_.size() + vertices); }
 
-    /// How far the vertex is, in plan, off the edge between facets that it was put on, where that
-    /// is more than the rounding of one position; session unit. Zero for vertices that were there
-    /// before the request.
-    double bend_of(VertexId v) const { return knows(v) ? of_[v.index() - first_].bend : 0.0; }
+    /// How far the vertex is at most, in plan, off the edge between facets that it was put on;
+    /// session unit. Zero for vertices that were there before the request, the usual for those of
+    /// which no more is known.
+    double bend_of(VertexId v) const { return of(v, &OfVertex::bend); }
     /// Remembers the larger of this and what is known. An edge may come to run through a vertex
     /// from before the request: that counts among the largest, but is not kept for the vertex,
     /// which did not move.
@@ -33,11 +36,12 @@ class Drift {
         double& known = at(v).bend;
         known = std::max(known, bend);
     }
+    /// At least the usual.
     double largest_bend() const { return largest_bend_; }
 
-    /// How far the vertex is from the input segments whose chains it is on, where that is more than
-    /// the rounding of one position; session unit. Like `bend_of`, for edges inside facets.
-    double stray_of(VertexId v) const { return knows(v) ? of_[v.index() - first_].stray : 0.0; }
+    /// How far the vertex is at most from the input segments whose chains it is on; session unit.
+    /// Like `bend_of`, for edges inside facets.
+    double stray_of(VertexId v) const { return of(v, &OfVertex::stray); }
     void stray(VertexId v, double distance) {
         if (v.index() < first_) return;
         double& known = at(v).stray;
@@ -61,11 +65,16 @@ class Drift {
 
   private:
     struct OfVertex {
-        double bend = 0.0;
+        double bend = 0.0;  ///< zero: not measured
         double stray = 0.0;
     };
 
-    bool knows(VertexId v) const { return v.index() >= first_ && v.index() - first_ < of_.size(); }
+    double of(VertexId v, double OfVertex::*kind) const {
+        if (v.index() < first_) return 0.0;
+        const std::size_t i = v.index() - first_;
+        const double known = i < of_.size() ? of_[i].*kind : 0.0;
+        return known > 0.0 ? known : usual_;
+    }
     OfVertex& at(VertexId v) {
         const std::size_t i = v.index() - first_;
         if (i >= of_.size()) of_.resize(i + 1);
@@ -73,9 +82,10 @@ class Drift {
     }
 
     std::size_t first_;
-    std::vector<OfVertex> of_;  ///< as far as any is off anything
+    double usual_;
+    std::vector<OfVertex> of_;  ///< as far as any was measured
     std::vector<std::uint32_t> nesting_;
-    double largest_bend_ = 0.0;
+    double largest_bend_;
     std::uint32_t deepest_ = 0;
 };
 

@@ -17,6 +17,10 @@ namespace tinsmith::core {
 
 namespace {
 
+Drift drift_on(const Tin& tin) {
+    return Drift(tin.vertex_count(), kUsualDrift * reach_of_rounding(tin));
+}
+
 /// One request on one mesh, whole or not at all: what is not kept is taken back.
 class Request {
   public:
@@ -25,8 +29,11 @@ class Request {
           shapes_(shapes),
           options_(options),
           limits_(limits_of(options)),
-          drift_(tin.vertex_count()),
-          watch_(options.clock_ms) {}
+          drift_(drift_on(tin)),
+          watch_(options.clock_ms),
+          progress_(options.progress, shapes, improves_across() ? kShareOfMarch : 1.0) {
+        limits_.progress = &progress_;
+    }
     Request(const Request&) = delete;
     Request& operator=(const Request&) = delete;
     ~Request() { take_back(tin_, done_); }
@@ -39,7 +46,7 @@ class Request {
                                         [](const ShapeReport& r) { return !r.outside.empty(); });
         if (leaves && options_.outside == Outside::Reject) return leaving_errors(report_);
         watch_.lap(report_.time_ms.integrate);
-        if (options_.improve == Improve::Paper || options_.improve == Improve::Bounded)
+        if (improves_across())
             if (std::optional<Error> error = improve_across_facets()) return *error;
         name_chains();
         return std::move(report_);
@@ -59,7 +66,11 @@ class Request {
     }
 
     static MarchLimits limits_of(const IntegrateOptions& options) {
-        return {options.max_crossings, options.max_new_triangles, &options.cancelled};
+        return {options.max_crossings, options.max_new_triangles, &options.cancelled, nullptr};
+    }
+
+    bool improves_across() const {
+        return options_.improve == Improve::Paper || options_.improve == Improve::Bounded;
     }
 
     /// All of them, each path the way it finds; another way where rounding led one astray. The
@@ -109,7 +120,9 @@ class Request {
         take_back(tin_, done_);
         done_.clear();
         limits_ = limits_of(options_);
-        drift_ = Drift(tin_.vertex_count());
+        limits_.progress = &progress_;
+        progress_.begin();
+        drift_ = drift_on(tin_);
         report_.shapes.clear();
         changed_.clear();
         set_vertices_.clear();
@@ -119,7 +132,8 @@ class Request {
 
     std::optional<Error> integrate_shape(std::size_t s, const Ways& ways) {
         Surgery surgery(tin_);
-        ShapeIntegration integration(surgery, options_, limits_, drift_, watch_, report_.time_ms);
+        ShapeIntegration integration(surgery, options_, limits_, drift_, watch_, report_.time_ms,
+                                     progress_);
         if (!integration.run(shapes_[s], s, ways)) {
             Error error = integration.error();
             error.place.shape = s;
@@ -177,6 +191,13 @@ class Request {
             if (options_.cancelled && options_.cancelled())
                 return Error{
                     ErrorCode::Cancelled, "the request was cancelled; nothing was changed", {}};
+            if (options_.progress) {
+                const double of_shape =
+                    static_cast<double>(i) / static_cast<double>(vertices.size());
+                const double done =
+                    (static_cast<double>(s) + of_shape) / static_cast<double>(shapes_.size());
+                options_.progress(kShareOfMarch + (1.0 - kShareOfMarch) * done);
+            }
             const auto outcome = improver.improve(
                 surgery, vertices.subspan(i, std::min(kAskEvery, vertices.size() - i)));
             if (!outcome.has_facets) return Error{ErrorCode::IdBudget, kNoFacetLeft, {}};
@@ -187,6 +208,9 @@ class Request {
         return std::nullopt;
     }
 
+    /// Of the whole work, where swaps across facets follow on the march.
+    static constexpr double kShareOfMarch = 0.5;
+
     Tin& tin_;
     std::span<const Shape> shapes_;
     const IntegrateOptions& options_;
@@ -194,6 +218,7 @@ class Request {
     Drift drift_;
     Report report_;
     Stopwatch watch_;
+    Progress progress_;
     Undo done_;
     std::vector<std::vector<VertexId>> changed_;  ///< by each shape
     std::vector<VertexId> set_vertices_;          ///< by all of them

@@ -300,8 +300,10 @@ bool March::within_limits() {
         return fail(ErrorCode::TriangleBudget,
                     "the request makes more triangles than allowed; send it in parts");
     constexpr std::uint64_t kAskEvery = 256;
-    if (limits_.cancelled != nullptr && *limits_.cancelled && asked_++ % kAskEvery == 0 &&
-        (*limits_.cancelled)())
+    if (asked_++ % kAskEvery != 0) return true;
+    if (limits_.progress != nullptr && limits_.progress->is_asked_for())
+        limits_.progress->tell(at_.valid() ? share_along(tin_.plan(at_)) : 0.0);
+    if (limits_.cancelled != nullptr && *limits_.cancelled && (*limits_.cancelled)())
         return fail(ErrorCode::Cancelled, "the request was cancelled; nothing was changed");
     return true;
 }

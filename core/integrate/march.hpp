@@ -11,6 +11,7 @@
 #include "core/integrate/drift.hpp"
 #include "core/integrate/improve.hpp"
 #include "core/integrate/options.hpp"
+#include "core/integrate/progress.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
 #include "core/integrate/way.hpp"
@@ -44,6 +45,7 @@ struct MarchLimits {
     std::uint64_t max_crossings = UINT64_MAX;
     std::uint64_t max_new_triangles = UINT64_MAX;
     const std::function<bool()>* cancelled = nullptr;
+    Progress* progress = nullptr;
 };
 
 /// Walks paths through a mesh and leaves each of their segments behind as a chain of constrained
@@ -85,8 +87,6 @@ class March {
     std::optional<Error>& error() { return error_; }
     /// Whether rounding decided somewhere, so that what was done is to be checked.
     bool is_delicate() const { return is_delicate_; }
-    /// How far any vertex may be, in plan, off the edge between facets that it was put on.
-    double largest_bend() const;
     /// Vertices whose surroundings changed, but for those where the improver has seen to that; the
     /// caller swaps what it will and clears them. Complete once the path is finished.
     std::vector<VertexId>& changed() {
@@ -230,9 +230,6 @@ class March {
     std::optional<Error> error_;
     std::vector<VertexId> changed_;
     std::vector<OwnElevation> own_elevations_;
-    /// Of the reach: what rounding does to a position that was computed on an edge. Not added up.
-    static constexpr double kUsualDrift = 0.1875;
-
     /// Of a side's marks: constrained, locked, inside a facet.
     static constexpr std::uint32_t kNotPlain = 0x1011U;
 

@@ -50,6 +50,9 @@ struct IntegrateOptions {
     IdLimits ids = {};
     /// Asked now and then; true stops the work and leaves the mesh as it was.
     std::function<bool()> cancelled = {};
+    /// Told now and then how much of the work is done, from 0 to 1. It may fall back where rounding
+    /// made the request begin again.
+    std::function<void(double)> progress = {};
     /// Milliseconds from any fixed start; for the report alone, never in a decision.
     std::function<double()> clock_ms = {};
     /// Where walks begin: 0 for the nearest hint, else triangle `walk_seed` modulo their number.

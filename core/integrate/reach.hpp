@@ -16,4 +16,7 @@ inline double reach_of_rounding(const Tin& tin) {
                                std::fabs(box.max.y)}));
 }
 
+/// Of the reach: what rounding does to a position that was computed on an edge. Not added up.
+inline constexpr double kUsualDrift = 0.1875;
+
 }  // namespace tinsmith::core

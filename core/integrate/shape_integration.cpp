@@ -74,6 +74,7 @@ bool ShapeIntegration::run(std::size_t index, const Path& path, const Way& way) 
             return false;
         }
         last = next;
+        progress_.end_segment();
         improve(kImproveBatch);
     }
     const bool done = march_.finish();
@@ -160,7 +161,7 @@ double ShapeIntegration::certify(const Measurement& measured) {
     const Tin& tin = surgery_.tin();
     const Bounds& box = tin.bounds();
     const double height = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
-    const double added = 2.0 * measured.steepest_slope * march_.largest_bend() +
+    const double added = 2.0 * measured.steepest_slope * drift_.largest_bend() +
                          kInterpolationUlps * (1.0 + drift_.deepest()) * ulp(height);
     const double before = measured.met_divided_facets ? tin.facet_error() : 0.0;
     surgery_.raise_facet_error(before + added);

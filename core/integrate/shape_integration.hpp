@@ -17,12 +17,13 @@ namespace tinsmith::core {
 class ShapeIntegration {
   public:
     ShapeIntegration(Surgery& surgery, const IntegrateOptions& options, const MarchLimits& limits,
-                     Drift& drift, Stopwatch& watch, StageTimes& times)
+                     Drift& drift, Stopwatch& watch, StageTimes& times, Progress& progress)
         : surgery_(surgery),
           options_(options),
           watch_(watch),
           times_(times),
           drift_(drift),
+          progress_(progress),
           improver_(surgery),
           march_(surgery, options, limits, drift,
                  options.improve == Improve::Strict ? &improver_ : nullptr) {}
@@ -52,6 +53,7 @@ class ShapeIntegration {
     Stopwatch& watch_;
     StageTimes& times_;
     Drift& drift_;
+    Progress& progress_;
     Improver improver_;
     March march_;
     std::vector<VertexId> changed_;

@@ -117,7 +117,7 @@ VertexId March::place_on(Side edge, Point2 p) {
         const std::uint32_t below = deepest_corner(t);
         const double strays = tin_.is_constrained(edge) ? stray_of(edge, p) : 0.0;
         const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)});
-        if (strays > kUsualDrift * reach_of_rounding_) drift_.stray(v, strays);
+        drift_.stray(v, strays);
         drift_.nest(v, below);
         changed_.push_back(v);
         return v;
@@ -127,7 +127,7 @@ VertexId March::place_on(Side edge, Point2 p) {
         std::max(drift_.nesting_of(tin_.origin(edge)), drift_.nesting_of(tin_.destination(edge)));
     const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_on(tin_, edge, p)});
     drift_.nest(v, below);
-    if (bent > kUsualDrift * reach_of_rounding_) drift_.bend(v, bent);
+    if (bent > 0.0) drift_.bend(v, bent);
     changed_.push_back(v);
     return v;
 }
@@ -140,7 +140,7 @@ bool March::bends_unusually(Side edge, Point2 p) const {
     const Point2 a = tin_.plan(from), b = tin_.plan(to);
     const AreaEstimate area = estimate_doubled_area(a, b, p);
     const double length = std::max(std::fabs(b.x - a.x), std::fabs(b.y - a.y));
-    return std::fabs(area.value) + area.error > kUsualDrift * reach_of_rounding_ * length;
+    return std::fabs(area.value) + area.error > drift_.usual() * length;
 }
 
 /// How far from the edge as it was before the request it is bent when it goes through p: what its
@@ -165,10 +165,6 @@ double March::off_edge(Side edge, Point2 p, double at_origin, double at_destinat
 std::uint32_t March::deepest_corner(TriangleId t) const {
     const auto& [a, b, c] = tin_.triangle(t).vertices;
     return std::max({drift_.nesting_of(a), drift_.nesting_of(b), drift_.nesting_of(c)});
-}
-
-double March::largest_bend() const {
-    return std::max(drift_.largest_bend(), kUsualDrift * reach_of_rounding_);
 }
 
 /// How far from the input segments that it is part of a constrained edge is when it goes through p.

@@ -152,11 +152,9 @@ bool March::stride(Side& exit) {
     const Point2 a = here.a.plan(), b = here.b.plan(), c = here.c.plan(), d = here.d.plan();
     if (!is_left(a, p, c) || !is_left(p, b, c) || !is_left(b, p, d) || !is_left(p, a, d))
         return false;
-    if (drift_.largest_bend() > 0.0 &&
-        (drift_.bend_of(here.a_id) > 0.0 || drift_.bend_of(here.b_id) > 0.0))
-        return false;
+    if (drift_.bend_of(here.a_id) > 0.0 || drift_.bend_of(here.b_id) > 0.0) return false;
     const AreaEstimate bent = estimate_doubled_area(a, b, p);
-    return std::fabs(bent.value) + bent.error <= kUsualDrift * reach_of_rounding_ * here.longest;
+    return std::fabs(bent.value) + bent.error <= drift_.usual() * here.longest;
 }
 
 /// Splits the edge at p, goes there, and says by which edge the way goes on; invalid where that has

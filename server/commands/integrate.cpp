@@ -14,6 +14,7 @@
 #include "server/polygon_reading.hpp"
 #include "server/services.hpp"
 #include "server/terrain_reading.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -29,15 +30,19 @@ Limits command_limits() {
     return limits;
 }
 
-std::optional<LoadedTerrain> read_terrain(const std::string& path, const Services& services) {
+std::optional<LoadedTerrain> read_terrain(const std::string& path, const Services& services,
+                                          ProgressBar& bar) {
+    bar.name("reading the terrain");
     std::string error;
     const auto bytes = read_file(path, error);
     if (!bytes) {
+        bar.clear();
         complain(error);
         return std::nullopt;
     }
     auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), services.read_limits());
     if (!terrain) {
+        bar.clear();
         complain(path, terrain.faults());
         return std::nullopt;
     }
@@ -45,22 +50,29 @@ std::optional<LoadedTerrain> read_terrain(const std::string& path, const Service
 }
 
 std::optional<PolygonWork> read_polygons(const IntegrateConfig& config, const Services& services,
-                                         const std::string& terrain_crs) {
+                                         const std::string& terrain_crs, ProgressBar& bar) {
+    bar.name("reading the polygons");
+    begin_stage(0.1);
     std::string error;
     const auto bytes = read_file(config.polygons, error);
     if (!bytes) {
+        bar.clear();
         complain(error);
         return std::nullopt;
     }
     auto work = read_polygon_work(*bytes, config.polygon_options, services.read_limits());
     if (!work) {
+        bar.clear();
         complain(config.polygons, work.faults());
         return std::nullopt;
     }
     if (const auto fault = crs_fault(*work, terrain_crs)) {
+        bar.clear();
         complain(config.polygons, {*fault});
         return std::nullopt;
     }
+    bar.name("integrating");
+    begin_stage(0.8);
     work->edit.want_mesh = true;
     set_budgets(work->edit, services.limits, services.stopping);
     return std::move(*work);
@@ -75,13 +87,16 @@ bool write_output(const std::string& path, std::string_view content) {
 }
 
 int write_results(const IntegrateConfig& config, const Session& session,
-                  const PolygonResult& result, bool dry_run, api::GltfOptions options) {
+                  const PolygonResult& result, bool dry_run, api::GltfOptions options,
+                  ProgressBar& bar) {
     if (!result.mesh) {
+        bar.clear();
         complain("not enough memory for a copy of the mesh");
         return kExitRefused;
     }
     options.unit_to_metre = api::metres_per(session.facts().unit);
     const auto written = api::write_glb(*result.mesh, options);
+    bar.clear();
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
         complain(config.output + ": " + error->detail);
         return kExitRefused;
@@ -96,7 +111,6 @@ int write_results(const IntegrateConfig& config, const Session& session,
 }  // namespace
 
 int run_integrate(const IntegrateConfig& config) {
-    Progress progress(4);
     const Services services(command_limits());
     auto mesh_options = api::parse_mesh_options(config.mesh_options);
     if (!mesh_options) complain("options", mesh_options.faults());
@@ -109,26 +123,28 @@ int run_integrate(const IntegrateConfig& config) {
         complain("--output and --report are one file, " + config.output + ": name two");
         return kExitUsage;
     }
-    progress.next("reading the terrain");
-    auto terrain = read_terrain(config.terrain, services);
+    ProgressBar bar;
+    Work watched([&bar](double done) { bar.show(done); });
+    const WorkScope scope(watched);
+    auto terrain = read_terrain(config.terrain, services, bar);
     if (!terrain) return kExitRefused;
-    progress.next("reading the polygons");
-    auto work = read_polygons(config, services, terrain->about.crs);
+    auto work = read_polygons(config, services, terrain->about.crs, bar);
     if (!work) return kExitRefused;
 
-    progress.next("integrating");
     const std::string name = std::filesystem::path(config.terrain).stem().string();
     Session session({name, "0", name, terrain->about.crs, terrain->about.unit},
                     std::move(terrain->tin));
     const bool dry_run = work->edit.dry_run;
     const auto outcome = session.integrate(std::move(work->edit));
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
-        progress.clear();
+        bar.clear();
         complain(config.polygons, faults_of(*errors, work->shapes));
         return kExitRefused;
     }
-    progress.next("writing");
-    return write_results(config, session, std::get<PolygonResult>(outcome), dry_run, *mesh_options);
+    bar.name("writing");
+    begin_stage(1.0);
+    const auto& result = std::get<PolygonResult>(outcome);
+    return write_results(config, session, result, dry_run, *mesh_options, bar);
 }
 
 }  // namespace tinsmith::server

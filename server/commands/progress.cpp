@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/commands/progress.hpp"
 
+#include <algorithm>
 #include <iostream>
-#include <string>
 
 #include <unistd.h>
 
 namespace tinsmith::server {
 
-Progress::Progress(int stages) : stages_(stages), visible_(::isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar() : visible_(::isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() {
+ProgressBar::~ProgressBar() {
     clear();
 }
 
-void Progress::next(std::string_view name) {
-    static constexpr int kWidth = 30;
-    if (!visible_) return;
-    const auto done = static_cast<std::size_t>(kWidth * stage_ / stages_);
-    ++stage_;
-    std::cerr << "\r\033[K[" << std::string(done, '#') << std::string(kWidth - done, '.') << "] "
-              << stage_ << "/" << stages_ << " " << name << std::flush;
+void ProgressBar::name(std::string_view stage) {
+    stage_ = stage;
+    draw();
 }
 
-void Progress::clear() {
+void ProgressBar::show(double done) {
+    done_ = std::clamp(done, 0.0, 1.0);
+    draw();
+}
+
+void ProgressBar::draw() const {
+    static constexpr int kWidth = 30;
+    static constexpr int kPercent = 100;
+    if (!visible_) return;
+    const auto full = static_cast<std::size_t>(kWidth * done_);
+    std::cerr << "\r\033[K[" << std::string(full, '#') << std::string(kWidth - full, '.') << "] "
+              << static_cast<int>(kPercent * done_) << "% " << stage_ << std::flush;
+}
+
+void ProgressBar::clear() {
     if (visible_) std::cerr << "\r\033[K" << std::flush;
 }
 

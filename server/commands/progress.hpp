@@ -1,28 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace tinsmith::server {
 
-/// A bar of stages on standard error, and nothing at all where that is no terminal.
-class Progress {
+/// A bar on standard error of how far work has come, and nothing at all where that is no terminal.
+class ProgressBar {
   public:
-    explicit Progress(int stages);
-    ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+    ProgressBar();
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// Begins the next stage.
-    void next(std::string_view name);
+    /// What is being done from now on.
+    void name(std::string_view stage);
+    /// So much of all is done, from 0 to 1.
+    void show(double done);
 
     /// Takes the bar away, so that other lines can be written.
     void clear();
 
   private:
-    const int stages_;
+    void draw() const;
+
     const bool visible_;
-    int stage_ = 0;
+    std::string stage_;
+    double done_ = 0.0;
 };
 
 }  // namespace tinsmith::server

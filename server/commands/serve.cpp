@@ -65,6 +65,7 @@ bool serve_until_stopped(HttpServer& server, Services& services, const StopSigna
     signals.release();
     log_info("stopping: requests under way are answered first");
     server.stop();
+    services.jobs.shut_down();
     if (served.wait_for(kGrace) == std::future_status::timeout) services.stopping = true;
     return served.get();
 }

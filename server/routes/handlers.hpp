@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "server/http_message.hpp"
 #include "server/router.hpp"
 #include "server/services.hpp"
@@ -13,6 +16,11 @@ namespace tinsmith::server {
 Response get_welcome(Services&, const Request&, const PathArguments&);
 Response get_health(Services&, const Request&, const PathArguments&);  ///< takes no lock
 Response get_limits(Services&, const Request&, const PathArguments&);
+
+// description_routes.cpp: the interface described, for programs and for people
+Response get_description(Services&, const Request&, const PathArguments&);
+Response get_docs(Services&, const Request&, const PathArguments&);
+Response get_docs_file(Services&, const Request&, const PathArguments&);
 
 // session_routes.cpp
 Response list_sessions(Services&, const Request&, const PathArguments&);
@@ -36,6 +44,25 @@ Response undo_edit(Services&, const Request&, const PathArguments&);
 Response redo_edit(Services&, const Request&, const PathArguments&);
 Response get_history(Services&, const Request&, const PathArguments&);
 Response get_change(Services&, const Request&, const PathArguments&);
+
+// lock_routes.cpp
+inline constexpr std::array<std::string_view, 3> kLockParameters{"snap", "crs", "dry_run"};
+Response put_locks(Services&, const Request&, const PathArguments&);
+Response delete_locks(Services&, const Request&, const PathArguments&);
+Response get_locks(Services&, const Request&, const PathArguments&);
+
+// region_routes.cpp
+Response list_regions(Services&, const Request&, const PathArguments&);
+Response get_region(Services&, const Request&, const PathArguments&);
+
+// job_routes.cpp
+Response list_jobs(Services&, const Request&, const PathArguments&);
+Response get_job(Services&, const Request&, const PathArguments&);
+Response get_job_result(Services&, const Request&, const PathArguments&);
+Response delete_job(Services&, const Request&, const PathArguments&);
+
+// integrate_routes.cpp
+Response integrate_once(Services&, const Request&, const PathArguments&);
 
 // delta_routes.cpp
 Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?since=

@@ -4,17 +4,20 @@
 #include <utility>
 
 #include "api/edit_answer.hpp"
+#include "api/formats/locks_json.hpp"
 #include "api/history.hpp"
 #include "api/responses.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
+#include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
+constexpr std::string_view kCursorKind = "change";
 constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kDelta};
 
 /// What is asked of a session, ready to be asked.
@@ -62,8 +65,8 @@ std::string listed(const std::vector<std::uint64_t>& versions) {
     return text;
 }
 
-Response refuse_polygon(const Request& request, const ChangeOutcome& outcome,
-                        const std::string& id) {
+Response refuse_polygon(const Request& request, const Session& session,
+                        const ChangeOutcome& outcome, const std::string& id) {
     if (std::holds_alternative<PolygonSettled>(outcome)) {
         return refuse(request, api::ProblemType::PolygonSettled,
                       "The session no longer keeps the operation that brought this polygon: only "
@@ -74,8 +77,7 @@ Response refuse_polygon(const Request& request, const ChangeOutcome& outcome,
                       "The edits of these versions name the polygon: " + listed(users->versions) +
                           ". Take them back first, or repeat with cascade=true and they go too.");
     }
-    return refuse(request, api::ProblemType::NoSuchPolygon,
-                  "No polygon of this session has the id \"" + id.substr(0, 64) + "\".");
+    return no_such_polygon(request, session, id);
 }
 
 Response send_change(const Request& request, Services& services, const Asked& asked,
@@ -103,10 +105,14 @@ Response send_change(const Request& request, Services& services, const Asked& as
         .with("Vary", "Accept");
 }
 
-/// A polygons request's own report again, or an edit's; of another change what is told of it.
+/// A request's own report again; of another change what is told of it.
 std::string text_of(const Session& session, const ChangeCopy& change) {
     if (change.answer) {
         return api::write_edit(session.facts().id, change.view.version, false, *change.answer);
+    }
+    if (change.locks) {
+        return api::write_locks({session.facts().id, change.view.version, false,
+                                 change.locks->locked, change.locks->paths});
     }
     if (!change.report) return api::write_change(session.facts().id, change.view);
     return api::write_report(
@@ -143,17 +149,24 @@ Response delete_polygon(Services& services, const Request& request,
     const bool is_about_polygon = std::holds_alternative<NoSuchPolygon>(outcome) ||
                                   std::holds_alternative<PolygonSettled>(outcome) ||
                                   std::holds_alternative<PolygonInUse>(outcome);
-    if (is_about_polygon) return refuse_polygon(request, outcome, arguments[1]);
+    if (is_about_polygon) return refuse_polygon(request, *what.session, outcome, arguments[1]);
     return send_change(request, services, what, outcome, api::ProblemType::NothingToUndo);
 }
 
 Response get_history(Services& services, const Request& request, const PathArguments& arguments) {
     const auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const auto page = require_page(request, kCursorKind);
+    if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
     const Session& session = *std::get<0>(found);
-    const HistoryCopy copy = session.history();
-    Response response = ok(kJson, api::write_history({session.facts().id, copy.version, copy.undo,
-                                                      copy.redo, copy.changes}));
+    const auto& [limit, after] = std::get<0>(page);
+    const HistoryCopy copy = session.history(parse_version(after).value_or(0), limit);
+    Response response = ok(kJson, api::write_history({session.facts().id, copy.version, copy.oldest,
+                                                      copy.undo, copy.redo, copy.changes}));
+    if (copy.more) {
+        const std::string last = std::to_string(copy.changes.back().version);
+        response.with("Link", next_link(request, kCursorKind, limit, last));
+    }
     return response.with("ETag", etag_of(session, copy.version, "-history"));
 }
 

@@ -8,6 +8,7 @@
 #include "api/crs.hpp"
 #include "api/responses.hpp"
 #include "server/answer_finish.hpp"
+#include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
@@ -48,21 +49,53 @@ Response tell(const Session& session, const EncodedMesh& mesh, const std::string
     return response.with("ETag", etag_of(session, mesh.version, suffix));
 }
 
+/// The version that the query names; nothing: the mesh as it is now.
+Step<std::optional<std::uint64_t>> require_version(const Request& request, const Session& session) {
+    const auto text = request.parameter("version");
+    if (!text) return std::optional<std::uint64_t>();
+    const auto version = parse_version(*text);
+    if (!version) {
+        std::string detail = "version is a whole number, as the session's history has it.";
+        return refuse(request, {api::ProblemType::InvalidParameter,
+                                detail,
+                                {{"INVALID_VALUE", detail, {}, {}, {}, "version"}}});
+    }
+    if (auto refusal = refusal_of_version(request, session, *version)) return *std::move(refusal);
+    return version;
+}
+
+/// A copy of the mesh as it is now or was, or why there is none.
+Step<MeshCopy> copy_mesh(Services& services, const Session& session, const Request& request,
+                         std::optional<std::uint64_t> version) {
+    if (!version) return session.copy_mesh();
+    const auto memory = require_memory(services, request, session.mesh_bytes());
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
+    const auto tin = session.tin_at(*version, rerun_limits(services.limits, services.stopping));
+    if (const auto* mesh = std::get_if<core::Tin>(&tin)) return MeshCopy{mesh->to_data(), *version};
+    return refuse_version(request, session, tin);
+}
+
 /// One representation of the mesh: conditions first, then what is kept, then `write`, which makes
 /// an answer of a copy of the mesh. What `write` refuses goes out and is not kept.
 template <typename Write>
 Response send(Services& services, const Session& session, const Request& request,
               const std::string& suffix, const Write& write) {
-    const std::uint64_t version = session.view().version;
+    const auto asked = require_version(request, session);
+    if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
+    const std::uint64_t version = std::get<0>(asked).value_or(session.view().version);
     if (auto answer = answer_to_conditions(request, session, version, suffix)) return *answer;
     std::optional<Response> refusal;
     const std::string& birth = session.facts().birth;
     const auto encode = [&]() -> MeshCache::Found {
-        const MeshCopy copy = session.copy_mesh();
-        Response response = write(copy.mesh);
+        auto copy = copy_mesh(services, session, request, std::get<0>(asked));
+        if (auto* none = std::get_if<Response>(&copy)) {
+            refusal = std::move(*none);
+            return nullptr;
+        }
+        const auto& [mesh, of] = std::get<0>(copy);
+        Response response = write(mesh);
         if (response.status == kDone) {
-            return std::make_shared<const EncodedMesh>(
-                EncodedMesh{copy.version, std::move(response)});
+            return std::make_shared<const EncodedMesh>(EncodedMesh{of, std::move(response)});
         }
         refusal = std::move(response);
         return nullptr;
@@ -81,7 +114,9 @@ Response send(Services& services, const Session& session, const Request& request
 }
 
 Response send_glb(Services& services, const Session& session, const Request& request) {
-    auto options = api::parse_mesh_options(options_of_query(request));
+    auto given = options_of_query(request);
+    std::erase_if(given, [](const api::NamedOption& option) { return option.name == "version"; });
+    auto options = api::parse_mesh_options(given);
     if (!options) {
         return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
     }
@@ -91,10 +126,11 @@ Response send_glb(Services& services, const Session& session, const Request& req
 }
 
 Response send_json(Services& services, const Session& session, const Request& request) {
-    if (!request.query.empty()) {
+    for (const auto& [name, value] : request.query) {
+        if (name == "version") continue;
         return refuse(request, api::ProblemType::InvalidParameter,
-                      "The JSON mesh has no options: full doubles, z up. Leave \"" +
-                          request.query.front().first + "\" out, or ask for model/gltf-binary.");
+                      "The JSON mesh has no options but version: full doubles, z up. Leave \"" +
+                          name + "\" out, or ask for model/gltf-binary.");
     }
     return send(services, session, request, "-json",
                 [](const core::MeshData& mesh) { return ok(kJson, api::write_mesh_json(mesh)); });

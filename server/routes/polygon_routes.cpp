@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <charconv>
 #include <utility>
 
 #include "api/crs.hpp"
@@ -12,6 +11,7 @@
 #include "server/routes/handlers.hpp"
 #include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -26,13 +26,6 @@ std::optional<Response> refusal_of_type(const Request& request) {
     if (type == "application/json" || type == "application/geo+json") return std::nullopt;
     return refuse_media_type(request, type, "polygons", "application/geo+json, application/json",
                              "-H 'Content-Type: application/json'");
-}
-
-/// 7 of "p7"; 0, which no polygon has, where it is none.
-std::uint64_t number_in(std::string_view id) {
-    std::uint64_t number = 0;
-    if (id.starts_with('p')) std::from_chars(id.data() + 1, id.data() + id.size(), number);
-    return number;
 }
 
 Response send_report(const Session& session, const PolygonResult& result, bool dry_run) {
@@ -74,6 +67,7 @@ Response integrate_polygons(Services& services, const Request& request,
     const auto expected = require_if_match(request, session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
 
+    begin_stage(0.1);
     auto work = read_polygon_work(request.body, options_of_query(request), services.read_limits());
     if (!work) {
         return refuse(request, api::problem_of_faults(work.kind(), std::move(work.faults())));
@@ -87,11 +81,14 @@ Response integrate_polygons(Services& services, const Request& request,
     work->edit.want_mesh = as_glb;
     work->edit.want_delta = as_delta;
     work->edit.expected_version = std::get<0>(expected);
+    begin_stage(0.8);
     set_budgets(work->edit, services.limits, services.stopping);
     const bool dry_run = work->edit.dry_run;
     if (dry_run && as_delta) {
         return refuse_delta_of_dry_run(request);
     }
+    const auto memory = require_memory(services, request, dry_run ? session.mesh_bytes() : 0);
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     if (!dry_run) {
         if (auto refusal = refusal_of_blind_edit(services, request, session)) return *refusal;
     }
@@ -106,6 +103,7 @@ Response integrate_polygons(Services& services, const Request& request,
         return refuse(request, api::ProblemType::NoSuchSession,
                       "The session was deleted while the edit ran: nothing of it is kept.");
     }
+    begin_stage(1.0);
     const auto& result = std::get<PolygonResult>(outcome);
     Response response = as_glb ? mesh_after(request, session, result.version, result.mesh, dry_run)
                         : as_delta ? delta_response(request, session, result.version, result.delta)
@@ -124,7 +122,7 @@ Response list_polygons(Services& services, const Request& request, const PathArg
     const Session& session = *std::get<0>(found);
     if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
     const auto& [limit, after] = std::get<0>(page);
-    const DrapedCopy copy = session.draped_after(number_in(after), limit);
+    const DrapedCopy copy = session.draped_after(polygon_number(after), limit);
     Response response =
         send_features(session, copy, std::get<0>(type),
                       api::write_feature_collection(copy.polygons, session.facts().crs));
@@ -140,11 +138,7 @@ Response get_polygon(Services& services, const Request& request, const PathArgum
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     const Session& session = *std::get<0>(found);
     const DrapedCopy copy = session.draped(arguments[1]);
-    if (copy.polygons.empty()) {
-        return refuse(request, api::ProblemType::NoSuchPolygon,
-                      "No polygon of this session has the id \"" + arguments[1].substr(0, 64) +
-                          "\". GET /v1/sessions/" + session.facts().id + "/polygons lists them.");
-    }
+    if (copy.polygons.empty()) return no_such_polygon(request, session, arguments[1]);
     if (auto answer = answer_early(request, session, std::get<0>(type))) return *answer;
     return send_features(session, copy, std::get<0>(type),
                          api::write_feature(copy.polygons.front(), session.facts().crs));

@@ -129,7 +129,7 @@ Response ask_elevations(Services& services, const Request& request,
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "points")) return *refusal;
     api::ReadLimits limits = services.read_limits();
-    limits.max_polygon_vertices = std::min(limits.max_polygon_vertices, kMaxPoints);
+    limits.max_polygon_vertices = std::min(limits.max_polygon_vertices, services.limits.max_points);
     auto points = api::read_points(request.body, limits);
     if (!points) return refuse_faults(request, points.kind(), std::move(points.faults()));
     const SpotsAnswer spots = spots_in(session, *points);
@@ -150,9 +150,10 @@ Response ask_profile(Services& services, const Request& request, const PathArgum
     if (const auto fault = crs_fault(claim, session.facts().crs)) {
         return refuse_faults(request, api::FaultKind::Invalid, {*fault});
     }
-    const auto outcome = profile_in(session, line->shapes.front().shape.paths.front().points,
-                                    {std::min(services.limits.max_crossings, kMaxProfileCrossings),
-                                     deadline(services.limits, services.stopping)});
+    const auto outcome =
+        profile_in(session, line->shapes.front().shape.paths.front().points,
+                   {std::min(services.limits.max_crossings, services.limits.max_profile_crossings),
+                    deadline(services.limits, services.stopping)});
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
         return refuse_errors(request, *errors, line->shapes);
     }
@@ -166,12 +167,21 @@ Response ask_volume(Services& services, const Request& request, const PathArgume
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "a question")) return *refusal;
     if (auto refusal = refusal_of_memory(services, request)) return *refusal;
+    begin_stage(0.1);
     auto asked = api::read_volume_request(request.body, services.read_limits());
     if (!asked) return refuse_faults(request, asked.kind(), std::move(asked.faults()));
     const auto other = require_other(services, request, session, *asked);
     if (const auto* refusal = std::get_if<Response>(&other)) return *refusal;
-    const auto outcome =
-        volume_in(session, *asked, std::get<0>(other).get(), services.limits, services.stopping);
+    const Session* theirs = std::get<0>(other).get();
+    const auto memory = require_memory(services, request, volume_bytes(session, *asked, theirs));
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
+    const auto outcome = volume_in(session, *asked, theirs, services.limits, services.stopping);
+    if (const auto* gone = std::get_if<VersionGone>(&outcome)) {
+        return version_gone(request, session, *gone);
+    }
+    if (const auto* ahead = std::get_if<VersionAhead>(&outcome)) {
+        return version_ahead(request, *ahead);
+    }
     if (const auto* fault = std::get_if<PolygonFault>(&outcome)) {
         return refuse_polygon(request, asked->polygon_id, *fault);
     }

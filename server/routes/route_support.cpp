@@ -48,6 +48,18 @@ Response no_such_session(const Request& request, const std::string& id) {
                       "\". GET /v1/sessions lists them; they are gone when the server stops.");
 }
 
+Response no_such_polygon(const Request& request, const Session& session, const std::string& id) {
+    return refuse(request, api::ProblemType::NoSuchPolygon,
+                  "No polygon of this session has the id \"" + id.substr(0, 64) +
+                      "\". GET /v1/sessions/" + session.facts().id + "/polygons lists them.");
+}
+
+std::uint64_t polygon_number(std::string_view id) {
+    std::uint64_t number = 0;
+    if (id.starts_with('p')) std::from_chars(id.data() + 1, id.data() + id.size(), number);
+    return number;
+}
+
 Step<std::size_t> require_media_type(const Request& request,
                                      std::span<const std::string_view> offers) {
     std::string accept;
@@ -178,6 +190,42 @@ Response version_gone(const Request& request, const Session& session, const Vers
                   "That version is no longer kept. The oldest kept is " +
                       std::to_string(gone.oldest) + "; /v1/sessions/" + session.facts().id +
                       "/mesh?since=0 is the whole mesh.");
+}
+
+Response refuse_version(const Request& request, const Session& session,
+                        const VersionOutcome& outcome) {
+    if (const auto* gone = std::get_if<VersionGone>(&outcome)) {
+        return version_gone(request, session, *gone);
+    }
+    if (const auto* ahead = std::get_if<VersionAhead>(&outcome)) {
+        return version_ahead(request, *ahead);
+    }
+    api::Problem problem = api::problem_of_errors(std::get<core::Errors>(outcome), {});
+    problem.detail =
+        "To make that version again took longer than this server allows, or the server is "
+        "stopping.";
+    return refuse(request, problem);
+}
+
+std::optional<Response> refusal_of_version(const Request& request, const Session& session,
+                                           std::uint64_t version) {
+    const auto missing = session.missing(version);
+    if (const auto* gone = std::get_if<VersionGone>(&missing)) {
+        return version_gone(request, session, *gone);
+    }
+    if (const auto* ahead = std::get_if<VersionAhead>(&missing)) {
+        return version_ahead(request, *ahead);
+    }
+    return std::nullopt;
+}
+
+Step<BorrowedMemory> require_memory(Services& services, const Request& request, std::size_t bytes) {
+    if (auto memory = services.sessions.borrow(bytes)) return *std::move(memory);
+    return refuse(request, api::ProblemType::OutOfMemory,
+                  "The copies that this needs, about " + std::to_string(bytes) +
+                      " bytes, would pass the limit max_memory_bytes of " +
+                      std::to_string(services.limits.max_memory_bytes) +
+                      " with all meshes. Try again later, or DELETE sessions that are not needed.");
 }
 
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request) {

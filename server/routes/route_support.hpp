@@ -25,6 +25,11 @@ Step<std::shared_ptr<Session>> require_session(Services& services, const Request
 
 Response no_such_session(const Request& request, const std::string& id);
 
+Response no_such_polygon(const Request& request, const Session& session, const std::string& id);
+
+/// 7 of "p7"; 0, which no polygon has, where it is none.
+std::uint64_t polygon_number(std::string_view id);
+
 /// Which of the offers the Accept header prefers, or 406 naming all of them.
 Step<std::size_t> require_media_type(const Request& request,
                                      std::span<const std::string_view> offers);
@@ -70,8 +75,20 @@ Response version_ahead(const Request& request, const VersionAhead& ahead);
 
 /// 410, naming the oldest version that is kept.
 Response version_gone(const Request& request, const Session& session, const VersionGone& gone);
+
+/// 404 or 410; nothing where the session has the version.
+std::optional<Response> refusal_of_version(const Request& request, const Session& session,
+                                           std::uint64_t version);
+
+/// What `tin_at` did not give, as an answer.
+Response refuse_version(const Request& request, const Session& session,
+                        const VersionOutcome& outcome);
+
 /// The shortest text that reads back to the same number.
 std::string text_of(double value);
+
+/// Memory for copies of meshes, or 507.
+Step<BorrowedMemory> require_memory(Services& services, const Request& request, std::size_t bytes);
 
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request);

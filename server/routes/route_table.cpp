@@ -10,6 +10,7 @@
 #include "server/routes/handlers.hpp"
 #include "server/routes/idempotency.hpp"
 #include "server/routes/paging.hpp"
+#include "server/routes/respond_async.hpp"
 #include "server/routes/route_support.hpp"
 
 namespace tinsmith::server {
@@ -17,6 +18,7 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
+constexpr std::array<std::string_view, 1> kVersion{"version"};
 constexpr std::array<std::string_view, 1> kEdit{"dry_run"};
 constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
 
@@ -51,10 +53,13 @@ std::vector<Route> make_routes(Services& services) {
             return function(services, request, arguments);
         };
     };
-    // For every POST that changes something: a retry with the same Idempotency-Key is not done
-    // again.
+    // For every POST that changes something, and what makes a version: a retry with the same
+    // Idempotency-Key is not done again, and who prefers so gets a job at once.
     const auto change = [&services, to](Function function) {
-        return keyed(services, to(function));
+        return keyed(services, deferrable(services, to(function)));
+    };
+    const auto long_json = [&services, to](Function function) {
+        return as_json(deferrable(services, to(function)));
     };
     const auto json = [to](Function function) { return as_json(to(function)); };
     const auto mesh = api::mesh_option_names();
@@ -62,29 +67,42 @@ std::vector<Route> make_routes(Services& services) {
     return {
         {"GET", "/", {}, to(get_welcome)},
         {"GET", "/healthz", {}, to(get_health)},
+        {"GET", "/openapi.json", {}, to(get_description)},
+        {"GET", "/docs", {}, to(get_docs)},
+        {"GET", "/docs/{file}", {}, to(get_docs_file)},
         {"GET", "/v1/limits", {}, json(get_limits)},
+        {"POST", "/v1/integrate", {}, deferrable(services, to(integrate_once))},
+        {"GET", "/v1/jobs", kPageParameters, json(list_jobs)},
+        {"GET", "/v1/jobs/{id}", {}, json(get_job)},
+        {"DELETE", "/v1/jobs/{id}", {}, json(delete_job)},
+        {"GET", "/v1/jobs/{id}/result", {}, to(get_job_result)},
         {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
         {"POST", "/v1/sessions", {}, as_json(change(create_session))},
         {"GET", "/v1/sessions/{id}", {}, json(get_session)},
-        {"PUT", "/v1/sessions/{id}", {}, json(put_session)},
+        {"PUT", "/v1/sessions/{id}", {}, long_json(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
         {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/polygons", kPageParameters, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
+        {"GET", "/v1/sessions/{id}/regions", kPageParameters, json(list_regions)},
+        {"GET", "/v1/sessions/{id}/regions/{pid}", {}, json(get_region)},
+        {"PUT", "/v1/sessions/{id}/locks", kLockParameters, change(put_locks)},
+        {"DELETE", "/v1/sessions/{id}/locks", kLockParameters, change(delete_locks)},
+        {"GET", "/v1/sessions/{id}/locks", kPageParameters, to(get_locks)},
         {"POST", "/v1/sessions/{id}/edits", kEdit, change(edit_polygon)},
         {"POST", "/v1/sessions/{id}/undo", {}, change(undo_edit)},
         {"POST", "/v1/sessions/{id}/redo", {}, change(redo_edit)},
-        {"GET", "/v1/sessions/{id}/history", {}, json(get_history)},
+        {"GET", "/v1/sessions/{id}/history", kPageParameters, json(get_history)},
         {"GET", "/v1/sessions/{id}/history/{version}", {}, json(get_change)},
         {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
-        {"GET", "/v1/sessions/{id}/mesh.json", {}, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
-        {"POST", "/v1/sessions/{id}/elevation", {}, json(ask_elevations)},
-        {"POST", "/v1/sessions/{id}/profile", {}, json(ask_profile)},
-        {"POST", "/v1/sessions/{id}/volume", {}, json(ask_volume)},
+        {"POST", "/v1/sessions/{id}/elevation", {}, long_json(ask_elevations)},
+        {"POST", "/v1/sessions/{id}/profile", {}, long_json(ask_profile)},
+        {"POST", "/v1/sessions/{id}/volume", {}, long_json(ask_volume)},
     };
 }
 

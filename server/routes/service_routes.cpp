@@ -24,7 +24,7 @@ Response get_health(Services&, const Request&, const PathArguments&) {
 
 Response get_limits(Services& services, const Request&, const PathArguments&) {
     const Limits& limits = services.limits;
-    const std::array<std::pair<std::string_view, double>, 11> list{{
+    const std::array<std::pair<std::string_view, double>, 18> list{{
         {"max_body_bytes", static_cast<double>(limits.max_body_bytes)},
         {"max_sessions", static_cast<double>(limits.max_sessions)},
         {"max_memory_bytes", static_cast<double>(limits.max_memory_bytes)},
@@ -34,6 +34,13 @@ Response get_limits(Services& services, const Request&, const PathArguments&) {
         {"max_history_bytes", static_cast<double>(limits.max_history_bytes)},
         {"max_crossings", static_cast<double>(limits.max_crossings)},
         {"max_edit_seconds", limits.max_edit_seconds},
+        {"max_points", static_cast<double>(limits.max_points)},
+        {"max_profile_crossings", static_cast<double>(limits.max_profile_crossings)},
+        {"job_threads", static_cast<double>(limits.job_threads)},
+        {"max_jobs", static_cast<double>(limits.max_jobs)},
+        {"max_queued_jobs", static_cast<double>(limits.max_queued_jobs)},
+        {"job_bytes", static_cast<double>(limits.job_bytes)},
+        {"job_seconds", static_cast<double>(limits.job_seconds)},
         {"mesh_cache", static_cast<double>(limits.mesh_cache)},
         {"kept_answers", static_cast<double>(limits.kept_answers)},
     }};

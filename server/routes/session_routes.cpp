@@ -25,8 +25,7 @@ constexpr std::string_view kTerrainTypes =
 /// The format by Content-Type, or 415 saying what curl should have been told.
 Step<TerrainFormat> require_terrain_format(const Request& request) {
     const std::string type = api::media_type_of(request.header("content-type").value_or(""));
-    if (type == "application/json") return TerrainFormat::Json;
-    if (type == "image/tiff" || type == "image/geotiff") return TerrainFormat::GeoTiff;
+    if (const auto format = terrain_format_named(type)) return *format;
     return refuse_media_type(request, type, "a terrain", kTerrainTypes,
                              "-H 'Content-Type: application/json' or "
                              "-H 'Content-Type: image/tiff'");
@@ -138,6 +137,10 @@ Response delete_session(Services& services, const Request& request,
     auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     auto& session = std::get<0>(found);
+    if (!request.body.empty()) {
+        return refuse(request, api::ProblemType::BadRequest,
+                      "There is no body here: leave it out.");
+    }
     if (auto refusal = refusal_of_blind_edit(services, request, *session)) return *refusal;
     const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;

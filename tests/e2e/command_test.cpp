@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The binary as a command: outputs, complaints and exit codes.
+#include <array>
+#include <cstdlib>
 #include <filesystem>
+#include <set>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "tests/e2e/program.hpp"
 
@@ -49,6 +54,36 @@ TEST_F(Command, IntegratesRealTerrain) {
     const auto told = json::parse(content_of(report));
     EXPECT_EQ(told["polygons"][0]["id"], "p1");
     EXPECT_GT(told["totals"]["crossings"], 0);
+}
+
+TEST_F(Command, ShowsABarOnATerminal) {
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+    ASSERT_GE(terminal, 0);
+    ASSERT_EQ(::grantpt(terminal), 0);
+    ASSERT_EQ(::unlockpt(terminal), 0);
+    std::string shown;
+    {
+        Program program({"integrate", kData + "jacksboro.tif", kData + "contour_3500.geojson", "-o",
+                         scratch.file("out.glb")},
+                        ::ptsname(terminal));
+        // Ends: the terminal reports an error once the program, which alone has it open, is gone.
+        std::array<char, 4096> buffer{};
+        for (;;) {
+            const auto size = ::read(terminal, buffer.data(), buffer.size());
+            if (size <= 0) break;
+            shown.append(buffer.data(), static_cast<std::size_t>(size));
+        }
+        EXPECT_EQ(program.wait(), 0);
+    }
+    ::close(terminal);
+    std::set<int> percents;
+    for (std::size_t at = shown.find("] "); at != shown.npos; at = shown.find("] ", at + 1))
+        percents.insert(std::atoi(shown.c_str() + at + 2));
+    EXPECT_GT(percents.size(), 20U) << shown;
+    for (const char* stage :
+         {"reading the terrain", "reading the polygons", "integrating", "writing"})
+        EXPECT_NE(shown.find(stage), std::string::npos) << stage;
+    EXPECT_TRUE(shown.ends_with("\r\033[K")) << "the bar is taken away";
 }
 
 TEST_F(Command, ComplainsInReadableLines) {

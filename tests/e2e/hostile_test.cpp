@@ -56,7 +56,6 @@ TEST_F(Hostile, ChunkedBodies) {
 }
 
 TEST_F(Hostile, LengthsThatAreNone) {
-    expect_refused(post(""), 411);
     expect_refused(post("Content-Length: abc\r\n", "x"), 400);
     expect_refused(post("Content-Length: -1\r\n", "x"), 400);
     expect_refused(post("Content-Length: 0x5\r\n", "hello"), 400);
@@ -66,8 +65,6 @@ TEST_F(Hostile, LengthsThatAreNone) {
 
 TEST_F(Hostile, BodiesWhereNoneBelong) {
     expect_refused(get("Content-Length: " + std::to_string(smuggled.size()) + "\r\n", smuggled),
-                   400);
-    expect_refused("DELETE /v1/sessions/x HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello",
                    400);
     expect_refused("HEAD /healthz HTTP/1.1\r\nHost: x\r\nContent-Length: " +
                        std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled,

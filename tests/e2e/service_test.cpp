@@ -56,6 +56,21 @@ class Service : public testing::Test {
     static inline ServerUnderTest* server = nullptr;
 };
 
+TEST_F(Service, TakesPostsWithoutALengthAsEmptyAndGoesOn) {
+    const std::string session = make_session();
+    Connection connection(port());
+    for (int round = 0; round < 3; ++round) {
+        connection.send("POST " + session + "/undo HTTP/1.1\r\nHost: x\r\n\r\n");
+        expect_problem(connection.read(), 409);
+        connection.send("POST /v1/sessions HTTP/1.1\r\nHost: x\r\n" + kJson + "\r\n\r\n");
+        expect_problem(connection.read(), 400);
+        connection.send("DELETE /v1/sessions/none HTTP/1.1\r\nHost: x\r\n\r\n");
+        expect_problem(connection.read(), 404);
+        connection.send("GET " + session + " HTTP/1.1\r\nHost: x\r\n\r\n");
+        EXPECT_EQ(connection.read().status, 200);
+    }
+}
+
 TEST_F(Service, GoesBackAndForth) {
     const std::string session = make_session();
     const std::string polygon = R"({"type": "Polygon",

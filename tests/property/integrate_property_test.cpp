@@ -14,17 +14,6 @@
 namespace tinsmith {
 namespace {
 
-/// Defects that are known and not mended: of a million operations, so many fail with this word.
-/// Each has case files in tests/cases/open. A word that is not here fails the test at once; the
-/// numbers only ever shrink.
-struct Defect {
-    const char* word;
-    std::uint64_t per_million;
-};
-constexpr std::array kOpen{
-    Defect{"G8", 10},  // needle_second_request_needless_vertex
-};
-
 class IntegrateProperty : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(IntegrateProperty, GuaranteesHoldOnRandomMeshesAndShapes) {
@@ -52,8 +41,6 @@ TEST_P(IntegrateProperty, GuaranteesHoldOnRandomMeshesAndShapes) {
             run.fault(word, seed, kind + ": " + broken[0]);
         }
     }
-    for (const Defect& defect : kOpen)
-        run.allow(defect.word, defect.per_million, run.operations());
     for (int k = 0; k < test::kMeshKinds; ++k) {
         const auto kind = static_cast<test::MeshKind>(k);
         run.allow(std::string("NOT_REPRESENTABLE on ") + test::name_of(kind),

@@ -41,15 +41,16 @@ Faults check_chains(const Edit& edit);
 /// what is near cannot be told from what is meant.
 Faults check_elevations(const Edit& edit);
 
-/// Where a segment a-b of a request crosses a constrained edge of the mesh before that request.
+/// Where a segment a-b of a request crosses a constrained edge, or one along which the surface
+/// bends or ends, of the mesh before that request.
 struct ActualCrossing {
     core::Point2 a;
     core::Point2 b;
     core::Point2 p;
 };
 
-/// Adds those of the shapes' segments.
-void add_actual_crossings(const Snapshot& before, std::span<const core::Shape> shapes,
+/// Adds those of the shapes' segments. `flat`: no bend is what bends by no more than that.
+void add_actual_crossings(const Snapshot& before, std::span<const core::Shape> shapes, double flat,
                           std::vector<ActualCrossing>& crossings);
 
 /// For `forced`: vertices are not counted.
@@ -58,8 +59,9 @@ inline constexpr std::size_t kUncounted = SIZE_MAX;
 /// G8: new vertices since `origin` are at distinct points of the shapes given since, or where
 /// their segments cross edges of `origin` or each other, or come within `snap` of them; at each
 /// such place no more than there are reasons. `forced` more are let pass at a place.
-/// G8 speaks of the mesh before each request: where the chains that earlier requests left are
-/// crossed more often than their segments are, those crossings are reasons too.
+/// G8 speaks of the mesh before each request: where the chains that earlier requests left, or the
+/// creases into which rounding bent a facet, are crossed more often than their segments are, those
+/// crossings are reasons too.
 Faults check_economy(const Snapshot& origin, const core::MeshData& after,
                      std::span<const core::Shape> shapes, std::span<const ActualCrossing> crossings,
                      double reach, double snap, std::size_t forced);

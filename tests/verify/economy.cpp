@@ -12,7 +12,7 @@ namespace {
 
 /// A position that is, or calls for, a vertex. What is nearer than `radius` may be one with it.
 struct Place {
-    /// Actual: a segment crosses a constrained edge as that lay in the mesh before its request.
+    /// Actual: a segment crosses a chain or crease as that lay in the mesh before its request.
     enum class Kind { OldVertex, Event, NewVertex, Actual };
     Point2 p;
     Kind kind;
@@ -176,9 +176,9 @@ class Clusters {
     std::vector<std::size_t> cluster_;
 };
 
-/// How often segments cross constrained edges in the cluster beyond what they cross there by the
+/// How often segments cross chains and creases in the cluster beyond what they cross there by the
 /// input alone: where rounding or a snap bent a chain, or left the way back beside the way there,
-/// it is crossed more often than its segment.
+/// it is crossed more often than its segment; where rounding bent a facet, so is the crease.
 std::size_t count_bent(const std::vector<Place>& places, const std::vector<std::size_t>& cluster) {
     std::map<std::size_t, std::pair<std::size_t, std::size_t>> of_line;  // actual, by the input
     for (const std::size_t i : cluster) {
@@ -194,16 +194,53 @@ std::size_t count_bent(const std::vector<Place>& places, const std::vector<std::
     return found;
 }
 
+/// How far apart two surfaces over the four points are where only one takes the edge a-b: at the
+/// point that lies in the convex hulls of both parts into which Radon's theorem parts them.
+double bend_at(Point3 a, Point3 b, Point3 c, Point3 d) {
+    const std::array<std::pair<double, double>, 4> shares{
+        {{doubled_area(b.plan(), c.plan(), d.plan()), a.z},
+         {-doubled_area(a.plan(), c.plan(), d.plan()), b.z},
+         {doubled_area(a.plan(), b.plan(), d.plan()), c.z},
+         {-doubled_area(a.plan(), b.plan(), c.plan()), d.z}}};
+    double positive = 0.0, gap = 0.0;
+    for (const auto& [share, z] : shares) {
+        positive += std::max(share, 0.0);
+        gap += share * z;
+    }
+    return positive > 0.0 ? std::fabs(gap) / positive : 0.0;
+}
+
+/// Edges along which the surface ends, or bends by more than `flat`.
+void add_creases(const Snapshot& mesh, double flat, std::vector<Line>& lines) {
+    const auto& at = mesh.data.vertices;
+    const auto corner = [&](std::uint32_t t, std::uint32_t a, std::uint32_t b) {
+        for (const std::uint32_t v : mesh.data.triangles[t])
+            if (v != a && v != b) return at[v];
+        return at[a];
+    };
+    for (std::uint32_t t = 0; t < mesh.data.triangles.size(); ++t) {
+        for (unsigned i = 0; i < 3; ++i) {
+            const std::uint32_t a = mesh.data.triangles[t][i];
+            const std::uint32_t b = mesh.data.triangles[t][(i + 1) % 3];
+            const std::uint32_t twin = mesh.stars.triangle_of(b, a);
+            if (twin != kNone && b < a) continue;
+            if (twin == kNone || bend_at(at[a], at[b], corner(t, a, b), corner(twin, a, b)) > flat)
+                lines.emplace_back(at[a].plan(), at[b].plan());
+        }
+    }
+}
+
 }  // namespace
 
-void add_actual_crossings(const Snapshot& before, std::span<const core::Shape> shapes,
+void add_actual_crossings(const Snapshot& before, std::span<const core::Shape> shapes, double flat,
                           std::vector<ActualCrossing>& crossings) {
     std::vector<Line> constraints;
-    double longest = 0.0;
-    for (const auto& [v, w] : before.data.constraints) {
+    for (const auto& [v, w] : before.data.constraints)
         constraints.emplace_back(before.data.vertices[v].plan(), before.data.vertices[w].plan());
-        longest = std::max(longest, constraints.back().b.x - constraints.back().a.x);
-    }
+    add_creases(before, flat, constraints);
+    double longest = 0.0;
+    for (const Line& line : constraints)
+        longest = std::max(longest, line.b.x - line.a.x);
     sort_out(constraints);
     std::vector<Line> segments;
     for (const Segment& s : segments_of(shapes))

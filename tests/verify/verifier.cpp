@@ -49,7 +49,10 @@ Faults Verifier::step(core::MeshData after, std::span<const core::Shape> shapes,
         options.improve == core::Improve::Paper || options.improve == core::Improve::Bounded;
     all_.insert(all_.end(), shapes.begin(), shapes.end());
     // The constraints of the first mesh are edges of it, which count as such.
-    if (forced != kUncounted && now_ != origin_) add_actual_crossings(*now_, shapes, crossings_);
+    if (forced != kUncounted && now_ != origin_) {
+        const double flat = 1e-9 * now_->grid.extent();
+        add_actual_crossings(*now_, shapes, flat, crossings_);
+    }
     widest_reach_ = std::max(widest_reach_, 2 * chain_reach(edit));
     widest_snap_ = std::max(widest_snap_, edit.options.snap);
     if (forced != kUncounted && comparable && (!swaps || shapes.size() == 1))

@@ -318,6 +318,34 @@ TEST_F(BentSpike, IsNoReasonForAThirdVertex) {
     EXPECT_EQ(faults.front().substr(0, 5), "G8 at");
 }
 
+TEST(Crease, IsAReasonForAVertexWhereTheSurfaceBends) {
+    // Its ends touch the border, and do not cross it.
+    const std::vector<core::Shape> shapes{{{{{{0, 1}, {1, 0}}, false}}}};
+    for (const double bend : {0.0, 1e-6, 1.0}) {
+        MeshData mesh;
+        mesh.vertices = {{0, 0, 0}, {1, 0, 1}, {1, 1, 3 + bend}, {0, 1, 2}};
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        std::vector<ActualCrossing> crossings;
+        add_actual_crossings(Snapshot(mesh), shapes, 1e-5, crossings);
+        ASSERT_EQ(crossings.size(), bend > 1e-5 ? 1U : 0U);
+        for (const ActualCrossing& crossing : crossings)
+            EXPECT_EQ(crossing.p, (Point2{0.5, 0.5}));
+    }
+}
+
+TEST(Crease, IsSeenWhereTheDiagonalsDoNotCross) {
+    // The edge from the middle to a corner of a triangle.
+    const std::vector<core::Shape> shapes{{{{{{0.25, 0.75}, {0.75, 0.25}}, false}}}};
+    for (const double bend : {0.0, 1.0}) {
+        MeshData mesh;
+        mesh.vertices = {{0, 0, 0}, {4, 0, 4}, {0, 4, 8}, {1, 1, 3 + bend}};
+        mesh.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+        std::vector<ActualCrossing> crossings;
+        add_actual_crossings(Snapshot(mesh), shapes, 1e-5, crossings);
+        EXPECT_EQ(crossings.size(), bend > 1e-5 ? 1U : 0U);
+    }
+}
+
 TEST_F(Planted, AnOutlineCutShort) {
     // A corner triangle goes; the mesh stays valid and covers less.
     MeshData mesh = after_;

@@ -9,6 +9,8 @@ TEST_F(Handlers, TellHealthAndLimits) {
     EXPECT_EQ(ask("GET", "/healthz").status, 200);
     EXPECT_EQ(json::parse(ask("GET", "/v1/limits").body)["max_sessions"], 3);
     EXPECT_EQ(json::parse(ask("GET", "/v1/limits").body)["mesh_cache"], 256 << 20);
+    EXPECT_EQ(json::parse(ask("GET", "/v1/limits").body)["max_points"], 100'000);
+    EXPECT_EQ(json::parse(ask("GET", "/v1/limits").body)["max_profile_crossings"], 1'000'000);
     EXPECT_EQ(ask("GET", "/").status, 200);
 }
 

@@ -50,6 +50,28 @@ TEST_F(Paging, GoesThroughSessions) {
     EXPECT_EQ(next(second), "");
 }
 
+TEST_F(Paging, GoesThroughHistory) {
+    const std::string session = make_session();
+    for (int i = 1; i <= 6; ++i)
+        post(session + "/polygons",
+             R"({"type":"Point","coordinates":[)" + std::to_string(i) + ",5]}");
+    const json whole = json::parse(ask("GET", session + "/history").body);
+    json changes = json::array();
+    for (std::string page = session + "/history?limit=3"; !page.empty();) {
+        const Response response = ask("GET", page);
+        const json part = json::parse(response.body);
+        EXPECT_EQ(part["oldest"], 1);
+        EXPECT_EQ(part["undo"], 7);
+        EXPECT_LE(part["changes"].size(), 3U);
+        for (const json& change : part["changes"])
+            changes.push_back(change);
+        page = next(response);
+    }
+    EXPECT_EQ(changes.size(), 7U);
+    EXPECT_EQ(changes, whole["changes"]);
+    EXPECT_EQ(ask("GET", session + "/history?limit=0").status, 400);
+}
+
 TEST_F(Paging, GoesThroughPolygons) {
     const std::string path = make_session() + "/polygons";
     std::string all;

@@ -213,7 +213,7 @@ TEST_F(Questions, RefuseVolumesWithAllFaultsAtOnce) {
               "WRONG_LENGTH @ /against/plane");
     EXPECT_EQ(codes(R"({"against": {"plane": [[0,0,0],[1,1,0],[2,2,5]]}})"),
               "PLANE_UPRIGHT @ /against/plane");
-    EXPECT_EQ(codes(R"({"against": {"version": 1}})"), "NOT_AVAILABLE @ /against/version");
+    EXPECT_EQ(codes(R"({"against": {"version": 0}})"), "WRONG_TYPE @ /against/version");
     EXPECT_EQ(codes(R"({"polygon": {"type": "Point", "coordinates": [1,1]},
                         "against": {"elevation": "high", "level": 3}, "grid": 1})"),
               "GEOJSON_TYPE WRONG_TYPE MEMBER_UNKNOWN MEMBER_UNKNOWN @ /polygon/type "

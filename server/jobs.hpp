@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "api/jobs.hpp"
+#include "server/http_message.hpp"
+#include "server/work.hpp"
+
+namespace tinsmith::server {
+
+/// Requests that are answered later: done one after the other on a few threads of their own, their
+/// answers kept for a while.
+///
+/// Laws: a job's state goes forward only, from queued over running to one of the three ends, and
+/// says what became of the request: `stopped` means that nothing came of it. Jobs that have not
+/// ended are never dropped; of those that have, the one that ended first goes first, when there are
+/// too many, too many bytes, or it is too old. Threads are started by the first job.
+class Jobs {
+  public:
+    using Time = std::chrono::steady_clock::time_point;
+    using Clock = std::function<Time()>;
+    using Task = std::function<Response(const Request&)>;
+
+    struct Bounds {
+        std::size_t threads = 2;
+        std::size_t queued = 64;                           ///< waiting for a thread
+        std::size_t kept = 1000;                           ///< in any state
+        std::size_t bytes = std::size_t{256} << 20;        ///< bodies of requests and answers
+        std::chrono::seconds age = std::chrono::hours(1);  ///< of answers
+    };
+
+    explicit Jobs(Bounds bounds, Clock clock = std::chrono::steady_clock::now);
+    /// Stops all work and waits for it.
+    ~Jobs();
+    Jobs(const Jobs&) = delete;
+    Jobs& operator=(const Jobs&) = delete;
+
+    /// Takes a request on; nothing: no room, or the service is stopping. The task must not throw.
+    std::optional<api::JobView> add(Request request, Task task);
+
+    std::optional<api::JobView> view(const std::string& id);
+
+    struct Page {
+        std::vector<api::JobView> jobs;
+        bool more = false;
+    };
+    /// In the order in which they came, those after the one of that id, which may be gone.
+    Page after(const std::string& id, std::size_t limit);
+
+    struct NoSuchJob {};
+    struct Unfinished {};
+    struct NotKept {};  ///< it ended, but its answer was too large
+    using Result = std::variant<Response, NoSuchJob, Unfinished, NotKept>;
+    Result result(const std::string& id);
+
+    /// Drops a job that has ended; tells any other to stop and waits, for so long at most, until it
+    /// has. What it was or is then; it may have been done before it could be stopped.
+    std::optional<api::JobView> remove(const std::string& id, std::chrono::milliseconds longest);
+
+    /// Tells all to stop, takes no more on, and waits for those that run.
+    void shut_down();
+
+  private:
+    struct Job {
+        api::JobView view;  ///< but for its progress, which the work has
+        Work work;
+        Request request;
+        Task task;
+        Response answer;
+        std::size_t bytes = 0;
+        Time ended;
+        std::list<std::string> place;  ///< its id, to be moved into `ended_`: an end must not fail
+    };
+    using JobPtr = std::shared_ptr<Job>;
+
+    static api::JobView view_of(const Job& job);
+    void run_jobs();
+    void end(Job& job, Response answer) noexcept;
+    void drop_old();
+    bool drop_first_ended();
+    void drop(const std::string& id);
+
+    const Bounds bounds_;
+    const Clock clock_;
+    std::mutex mutex_;
+    std::condition_variable queue_changed_;
+    std::condition_variable job_ended_;
+    std::map<std::string, JobPtr> jobs_;  ///< in the order in which they came
+    std::deque<JobPtr> queue_;
+    std::list<std::string> ended_;  ///< ids, in that order; some perhaps dropped already
+    std::size_t bytes_ = 0;
+    std::uint64_t count_ = 0;
+    bool shutting_down_ = false;
+    std::vector<std::thread> threads_;
+};
+
+}  // namespace tinsmith::server

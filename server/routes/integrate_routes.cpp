@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The main job in one request: a terrain and polygons in, the mesh or the report out, nothing kept.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "api/crs.hpp"
+#include "api/formats/form.hpp"
+#include "api/formats/options_reader.hpp"
+#include "api/media_type.hpp"
+#include "api/responses.hpp"
+#include "server/polygon_reading.hpp"
+#include "server/reply.hpp"
+#include "server/routes/handlers.hpp"
+#include "server/routes/route_support.hpp"
+#include "server/terrain_reading.hpp"
+#include "server/work.hpp"
+
+namespace tinsmith::server {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kGlb};
+constexpr std::string_view kTerrain = "terrain";
+constexpr std::string_view kPolygons = "polygons";
+constexpr std::string_view kOptions = "options";
+constexpr const char* kForm = "multipart/form-data";
+
+/// What is wrong with all of them, the first kind with a reason to be told.
+struct FormFaults {
+    api::FaultKind kind = api::FaultKind::Invalid;
+    api::Faults faults;
+
+    /// Faults at places of one part: its name stands in front of the pointer.
+    void add(api::FaultKind of, std::string_view part, api::Faults more) {
+        if (faults.empty()) kind = of;
+        for (api::Fault& fault : more) {
+            if (faults.size() >= api::kMaxFaults) return;
+            // Options are at fault where they stand, though the polygons' reader judges them.
+            const std::string own = "/" + std::string(kOptions);
+            if (!fault.pointer.starts_with(own)) {
+                fault.pointer = "/" + std::string(part) + fault.pointer;
+            }
+            faults.push_back(std::move(fault));
+        }
+    }
+};
+
+struct Form {
+    const api::FormPart* terrain = nullptr;
+    const api::FormPart* polygons = nullptr;
+    const api::FormPart* options = nullptr;
+};
+
+Form form_of(const std::vector<api::FormPart>& parts, FormFaults& faults) {
+    Form form;
+    for (const api::FormPart& part : parts) {
+        const api::FormPart** place = part.name == kTerrain    ? &form.terrain
+                                      : part.name == kPolygons ? &form.polygons
+                                      : part.name == kOptions  ? &form.options
+                                                               : nullptr;
+        if (place == nullptr || *place != nullptr) {
+            faults.add(api::FaultKind::Invalid, part.name.substr(0, 64),
+                       {{place == nullptr ? "PART_UNKNOWN" : "PART_REPEATED",
+                         "The parts are terrain, polygons and options, each once.",
+                         {}}});
+            continue;
+        }
+        *place = &part;
+    }
+    for (const auto& [part, name] :
+         {std::pair(form.terrain, kTerrain), {form.polygons, kPolygons}}) {
+        if (part != nullptr) continue;
+        faults.add(
+            api::FaultKind::Invalid, name,
+            {{"PART_MISSING",
+              "There is no such part: with curl, -F '" + std::string(name) + "=@file;type=...'.",
+              {}}});
+    }
+    return form;
+}
+
+/// What the part claims to be; programs that know no better say octet-stream, or nothing.
+std::optional<TerrainFormat> format_of(const api::FormPart& part) {
+    const bool is_unsaid = part.media_type.empty() || part.media_type == "application/octet-stream";
+    return is_unsaid ? terrain_format_of(part.body) : terrain_format_named(part.media_type);
+}
+
+std::optional<LoadedTerrain> read_terrain(const Services& services, const api::FormPart& part,
+                                          FormFaults& faults) {
+    const auto format = format_of(part);
+    if (!format) {
+        faults.add(api::FaultKind::Invalid, kTerrain,
+                   {{"PART_TYPE",
+                     "A terrain is not read as " + part.media_type.substr(0, 64) +
+                         ": give the part the type that POST /v1/sessions takes.",
+                     {}}});
+        return std::nullopt;
+    }
+    auto terrain = load_terrain(part.body, *format, services.read_limits());
+    if (terrain) return std::move(*terrain);
+    faults.add(terrain.kind(), kTerrain, std::move(terrain.faults()));
+    return std::nullopt;
+}
+
+struct Options {
+    std::vector<api::NamedOption> polygons;
+    api::GltfOptions mesh;
+};
+
+/// The options of the polygons request and of the mesh in one object, by their names.
+Options read_options(const Services& services, const api::FormPart* part, FormFaults& faults) {
+    Options options;
+    if (part == nullptr) return options;
+    auto read = api::read_options(part->body, services.read_limits());
+    if (!read) {
+        faults.add(read.kind(), kOptions, std::move(read.faults()));
+        return options;
+    }
+    const auto of_mesh = api::mesh_option_names();
+    std::vector<api::NamedOption> mesh;
+    for (auto& [name, value] : *read) {
+        const std::string pointer = "/" + std::string(kOptions) + "/" + name;
+        const bool is_mesh = std::ranges::find(of_mesh, name) != of_mesh.end();
+        (is_mesh ? mesh : options.polygons).push_back({name, value, pointer});
+    }
+    auto parsed = api::parse_mesh_options(mesh);
+    if (parsed) options.mesh = *parsed;
+    if (!parsed) faults.add(parsed.kind(), kOptions, std::move(parsed.faults()));
+    // Judged once more with the polygons, which may bring options along; by then what is wrong here
+    // has been told.
+    auto judged = api::parse_polygon_options(options.polygons, api::OptionList::Part);
+    if (!judged) {
+        faults.add(judged.kind(), kOptions, std::move(judged.faults()));
+        options.polygons.clear();
+    }
+    return options;
+}
+
+Response send(const Request& request, const Session& session, const PolygonResult& result,
+              bool dry_run, bool as_glb, api::GltfOptions options) {
+    if (!as_glb) {
+        return ok(kJson, api::write_report(
+                             {{}, result.version, dry_run, result.polygon_ids, *result.report}));
+    }
+    if (!result.mesh) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "There is no memory for a copy of the mesh: ask for the report, or try "
+                      "again later.");
+    }
+    options.unit_to_metre = api::metres_per(session.facts().unit);
+    return glb_response(request, *result.mesh, options);
+}
+
+/// Everything has been read.
+Response integrate(Services& services, const Request& request, LoadedTerrain terrain,
+                   PolygonWork work, bool as_glb, const api::GltfOptions& options) {
+    const auto memory = require_memory(services, request, terrain.tin.memory_bytes());
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
+    work.edit.want_mesh = as_glb;
+    begin_stage(0.8);
+    set_budgets(work.edit, services.limits, services.stopping);
+    const bool dry_run = work.edit.dry_run;
+    Session session({{}, {}, terrain.about.name, terrain.about.crs, terrain.about.unit},
+                    std::move(terrain.tin));
+    const auto outcome = session.integrate(std::move(work.edit));
+    if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
+        FormFaults faults;
+        faults.add(api::FaultKind::Invalid, kPolygons, faults_of(*errors, work.shapes));
+        return refuse(request, api::problem_of_errors(*errors, std::move(faults.faults)));
+    }
+    begin_stage(1.0);
+    return send(request, session, std::get<PolygonResult>(outcome), dry_run, as_glb, options);
+}
+
+}  // namespace
+
+Response integrate_once(Services& services, const Request& request, const PathArguments&) {
+    const std::string content_type(request.header("content-type").value_or(""));
+    const std::string type = api::media_type_of(content_type);
+    if (type != kForm) {
+        return refuse_media_type(request, type, "a form", kForm,
+                                 "-F 'terrain=@x.tif;type=image/tiff' and -F "
+                                 "'polygons=@y.geojson' in place of -d");
+    }
+    const auto accepted = require_media_type(request, kAnswerTypes);
+    if (const auto* refusal = std::get_if<Response>(&accepted)) return *refusal;
+    auto parts = api::read_form(request.body, content_type);
+    if (!parts) {
+        return refuse(request, api::problem_of_faults(parts.kind(), std::move(parts.faults())));
+    }
+    FormFaults faults;
+    const Form form = form_of(*parts, faults);
+    const Options options = read_options(services, form.options, faults);
+    std::optional<LoadedTerrain> terrain;
+    if (form.terrain != nullptr) terrain = read_terrain(services, *form.terrain, faults);
+    std::optional<PolygonWork> work;
+    if (form.polygons != nullptr) {
+        begin_stage(0.1);
+        auto read =
+            read_polygon_work(form.polygons->body, options.polygons, services.read_limits());
+        if (read) work = std::move(*read);
+        if (!read) faults.add(read.kind(), kPolygons, std::move(read.faults()));
+    }
+    if (terrain && work) {
+        if (auto fault = crs_fault(*work, terrain->about.crs)) {
+            faults.add(api::FaultKind::Invalid, kPolygons, {*std::move(fault)});
+        }
+    }
+    if (!faults.faults.empty()) {
+        return refuse(request, api::problem_of_faults(faults.kind, std::move(faults.faults)));
+    }
+    return integrate(services, request, *std::move(terrain), *std::move(work),
+                     std::get<0>(accepted) == 1, options.mesh)
+        .with("Vary", "Accept");
+}
+
+}  // namespace tinsmith::server

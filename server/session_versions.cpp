@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A session's mesh as it was.
+#include <algorithm>
+#include <utility>
+
+#include "core/integrate/integrator.hpp"
+#include "server/replay.hpp"
+#include "server/session.hpp"
+
+namespace tinsmith::server {
+
+VersionOutcome Session::tin_at(std::uint64_t wanted, const RunLimits& limits) const {
+    auto lock = lock_to_read();
+    if (wanted == 0 || wanted > version()) return VersionAhead{version()};
+    auto way = history_.way_to(wanted);
+    if (const auto* gone = std::get_if<VersionGone>(&way)) return *gone;
+    core::Tin tin = tin_;
+    const auto polygons = history_.polygons();
+    lock.unlock();
+    const auto& [taken, again] = std::get<WayBack>(way);
+    for (auto applied = taken.rbegin(); applied != taken.rend(); ++applied)
+        core::take_back(tin, (*applied)->undo);
+    const PolygonFinder find = [&polygons](std::string_view id) {
+        const auto found = std::ranges::find(polygons, id, &Polygon::id);
+        return found == polygons.end() ? std::optional<Polygon>() : *found;
+    };
+    auto done = run_all(tin, again, limits, find);
+    if (auto* failure = std::get_if<ReplayFailure>(&done)) return std::move(failure->errors);
+    return tin;
+}
+
+std::variant<std::monostate, VersionGone, VersionAhead> Session::missing(
+    std::uint64_t wanted) const {
+    const auto lock = lock_to_read();
+    if (wanted == 0 || wanted > version()) return VersionAhead{version()};
+    const auto way = history_.way_to(wanted);
+    if (const auto* gone = std::get_if<VersionGone>(&way)) return *gone;
+    return std::monostate{};
+}
+
+}  // namespace tinsmith::server

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+
+#include "tests/unit/server/handlers.hpp"
+
+namespace tinsmith::server {
+namespace {
+
+class RegionRoutes : public Handlers {
+  protected:
+    std::string session = make_session();
+
+    void cut(const std::string& coordinates, const std::string& type = "Polygon") {
+        const Response made =
+            post(session + "/polygons",
+                 R"({"type": ")" + type + R"(", "coordinates": )" + coordinates + "}");
+        ASSERT_EQ(made.status, 200) << made.body;
+    }
+    json region(const std::string& id) {
+        const Response answer = ask("GET", session + "/regions/" + id);
+        EXPECT_EQ(answer.status, 200) << answer.body;
+        return json::parse(answer.body);
+    }
+    json mesh() { return json::parse(ask("GET", session + "/mesh.json").body); }
+
+    /// The plan area of triangles of the JSON mesh.
+    static double area_of(const json& mesh, const json& triangles) {
+        double sum = 0.0;
+        for (const json& t : triangles) {
+            const json& corners = mesh["triangles"][t.get<std::size_t>()];
+            double x[3], y[3];
+            for (std::size_t i = 0; i < 3; ++i) {
+                x[i] = mesh["vertices"][corners[i].get<std::size_t>()][0];
+                y[i] = mesh["vertices"][corners[i].get<std::size_t>()][1];
+            }
+            sum += ((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])) / 2;
+        }
+        return sum;
+    }
+};
+
+TEST_F(RegionRoutes, SelectTrianglesOfTheJsonMesh) {
+    cut("[[[2,1],[6,1],[6,5],[2,5],[2,1]]]");
+    const json region = this->region("p1");
+    EXPECT_EQ(region["polygon"], "p1");
+    EXPECT_EQ(region["version"], 2);
+    EXPECT_EQ(region["unit"], "metre");
+    EXPECT_EQ(region["winding"], "evenodd");
+    EXPECT_NEAR(region["plan_area"].get<double>(), 16.0, 1e-12);
+    EXPECT_NEAR(area_of(mesh(), region["triangles"]), 16.0, 1e-12);
+    EXPECT_TRUE(std::is_sorted(region["triangles"].begin(), region["triangles"].end()));
+    EXPECT_EQ(region["within"], json::array());
+    EXPECT_EQ(region["shared"], json::array());
+    const json draped = json::parse(ask("GET", session + "/polygons/p1").body)["tinsmith"];
+    EXPECT_EQ(region["triangles"].size(), draped["triangles"]);
+    EXPECT_EQ(region["surface_area"], draped["surface_area"]);
+}
+
+TEST_F(RegionRoutes, TellTheBorderWithTheRegionOnItsLeft) {
+    cut("[[[2,1],[2,5],[6,5],[6,1],[2,1]]]");  // drawn clockwise
+    const json edges = region("p1")["edges"];
+    ASSERT_EQ(edges.size(), 1U);
+    EXPECT_EQ(edges[0]["polygons"], json::parse(R"(["p1"])"));
+    const json mesh = this->mesh();
+    double area = 0.0;
+    for (const json& edge : edges[0]["vertices"]) {
+        const json& a = mesh["vertices"][edge[0].get<std::size_t>()];
+        const json& b = mesh["vertices"][edge[1].get<std::size_t>()];
+        area +=
+            (a[0].get<double>() * b[1].get<double>() - b[0].get<double>() * a[1].get<double>()) / 2;
+    }
+    EXPECT_NEAR(area, 16.0, 1e-12);
+}
+
+TEST_F(RegionRoutes, TellWhatOthersContain) {
+    cut("[[[1,1],[6,1],[6,6],[1,6],[1,1]]]");
+    cut("[[[4,2],[9,2],[9,5],[4,5],[4,2]]]");  // p2 shares [4,6] x [2,5] with p1
+    cut("[[[2,2],[3,2],[3,3],[2,3],[2,2]]]");  // p3 lies in p1
+    cut("[[[8,8],[9,8],[9,9],[8,9],[8,8]]]");  // p4 is on its own
+    const json first = region("p1");
+    const json mesh = this->mesh();
+    EXPECT_EQ(first["within"], json::array());
+    ASSERT_EQ(first["shared"].size(), 2U);
+    EXPECT_EQ(first["shared"][0]["polygons"], json::parse(R"(["p2"])"));
+    EXPECT_NEAR(area_of(mesh, first["shared"][0]["triangles"]), 6.0, 1e-12);
+    EXPECT_EQ(first["shared"][1]["polygons"], json::parse(R"(["p3"])"));
+    EXPECT_NEAR(area_of(mesh, first["shared"][1]["triangles"]), 1.0, 1e-12);
+    const json third = region("p3");
+    EXPECT_EQ(third["within"], json::parse(R"(["p1"])"));
+    EXPECT_EQ(third["shared"][0]["triangles"], third["triangles"]);
+    EXPECT_EQ(region("p4")["shared"], json::array());
+    // p1's own border, and of p2 and p3 what lies in it, each edge once.
+    std::set<std::string> seen;
+    for (const json& along : first["edges"]) {
+        for (const json& edge : along["vertices"]) {
+            std::array<int, 2> ends{edge[0], edge[1]};
+            std::ranges::sort(ends);
+            EXPECT_TRUE(seen.insert(json(ends).dump()).second);
+        }
+    }
+    EXPECT_EQ(first["edges"].size(), 3U);
+}
+
+TEST_F(RegionRoutes, TellWhoRunsAlongASharedBorder) {
+    cut("[[[1,1],[4,1],[4,4],[1,4],[1,1]]]");
+    cut("[[[4,1],[7,1],[7,4],[4,4],[4,1]]]");
+    cut("[[4,1],[4,4]]", "LineString");
+    const json edges = region("p2")["edges"];
+    ASSERT_EQ(edges.size(), 2U);
+    EXPECT_EQ(edges[0]["polygons"], json::parse(R"(["p1","p2","p3"])"));
+    EXPECT_EQ(edges[1]["polygons"], json::parse(R"(["p2"])"));
+    EXPECT_EQ(region("p1")["shared"], json::array()) << "a border is not an inside";
+}
+
+TEST_F(RegionRoutes, ComeInPagesWithoutLines) {
+    cut("[[[1,1],[3,1],[3,3],[1,3],[1,1]]]");
+    cut("[[0,5],[9,5]]", "LineString");
+    cut("[[[2,2],[5,2],[5,4],[2,4],[2,2]]]");
+    cut("[[[6,6],[8,6],[8,8],[6,8],[6,6]]]");
+    const Response all = ask("GET", session + "/regions");
+    ASSERT_EQ(all.status, 200) << all.body;
+    const json list = json::parse(all.body)["regions"];
+    ASSERT_EQ(list.size(), 3U);
+    json pages = json::array();
+    std::string next = session + "/regions?limit=1";
+    while (!next.empty()) {
+        const Response page = ask("GET", next);
+        pages.push_back(json::parse(page.body)["regions"][0]);
+        const std::string link = header(page, "Link");
+        next = link.empty() ? "" : link.substr(1, link.find('>') - 1);
+    }
+    EXPECT_EQ(pages, list);
+    json alone = region("p3");
+    for (const char* name : {"session", "version", "unit"})
+        alone.erase(name);
+    EXPECT_EQ(alone, list[1]);
+    EXPECT_EQ(ask("GET", session + "/regions", {{"if-none-match", header(all, "ETag")}}).status,
+              304);
+}
+
+TEST_F(RegionRoutes, RefuseWhatHasNone) {
+    cut("[[0,5],[9,5]]", "LineString");
+    EXPECT_EQ(told(ask("GET", session + "/regions/p1")), "no-such-polygon");
+    EXPECT_EQ(told(ask("GET", session + "/regions/p2")), "no-such-polygon");
+    EXPECT_EQ(told(ask("GET", session + "/regions?cursor=x")), "INVALID_PARAMETER");
+}
+
+}  // namespace
+}  // namespace tinsmith::server

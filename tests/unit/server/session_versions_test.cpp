@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "core/mesh/build.hpp"
+#include "server/session.hpp"
+#include "tests/support/same_tin.hpp"
+
+namespace tinsmith::server {
+namespace {
+
+Session make_session(HistoryLimits limits = {}) {
+    core::MeshData data;
+    data.vertices = {{0, 0, 0}, {10, 0, 1}, {10, 10, 2}, {0, 10, 3}};
+    data.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return Session({"s", "b", "Square", "", "metre"}, std::move(core::build_tin(data).value()),
+                   limits);
+}
+
+/// A square from corner to corner.
+PolygonEdit square_edit(double low, double high) {
+    PolygonEdit edit;
+    edit.shapes = {{{{{low, low}, {high, low}, {high, high}, {low, high}}, true}}};
+    edit.origins.resize(1);
+    return edit;
+}
+
+TEST(SessionVersions, KeepsVersionsWithinItsBytes) {
+    HistoryLimits limits;
+    limits.bytes = 20'000;
+    Session s = make_session(limits);
+    // Each edit is undone and replaced: what it was is kept for the sake of its version alone.
+    for (int i = 0; i < 200; ++i) {
+        s.integrate(square_edit(1 + i * 0.01, 4 + i * 0.02));
+        s.undo({});
+        ASSERT_LE(s.view().memory_bytes, s.mesh_bytes() + 2 * limits.bytes);
+    }
+    const auto gone = std::get<VersionGone>(s.missing(2));
+    EXPECT_GT(gone.oldest, 2U);
+    EXPECT_LT(gone.oldest, s.view().version) << "some are kept";
+    for (std::uint64_t version = 1; version <= s.view().version; ++version)
+        EXPECT_EQ(std::holds_alternative<VersionGone>(s.missing(version)), version < gone.oldest);
+    EXPECT_TRUE(std::holds_alternative<core::Tin>(s.tin_at(gone.oldest, {})));
+}
+
+TEST(SessionVersions, MakesAVersionAgainUnlessStopped) {
+    Session s = make_session();
+    s.integrate(square_edit(2, 6));
+    const core::Tin was = s.copy_tin();
+    s.undo({});
+    s.integrate(square_edit(3, 7));
+    EXPECT_TRUE(test::same_tin(std::get<core::Tin>(s.tin_at(2, {})), was));
+    RunLimits stopped;
+    stopped.cancelled = [] { return true; };
+    const auto outcome = s.tin_at(2, stopped);
+    EXPECT_EQ(std::get<core::Errors>(outcome)[0].code, core::ErrorCode::Cancelled);
+}
+
+}  // namespace
+}  // namespace tinsmith::server
