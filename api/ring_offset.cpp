@@ -18,6 +18,9 @@ namespace {
 
 constexpr int kSegmentsOfAQuarter = 8;
 constexpr double kMitreLimit = 2.0;
+constexpr int kHalvings = 12;
+/// So many parts that vanish are asked what they would bear.
+constexpr int kMostAsked = 32;
 /// So many ulps of the largest coordinate lines must be apart, to be two in a mesh.
 constexpr double kLeastUlps = 256.0;
 
@@ -84,12 +87,22 @@ class Geos {
         return parts;
     }
 
-    /// Radius of about the largest circle in the polygon.
-    double inner_radius(const GEOSGeometry* polygon, double width) const {
-        const Geometry radius = own(GEOSMaximumInscribedCircle_r(handle_, polygon, width * 1e-4));
-        double length = 0.0;
-        if (radius) GEOSLength_r(handle_, radius.get(), &length);
-        return length;
+    /// About the largest distance at which a ring inside the polygon is left. Requires: none is
+    /// left at `most`. By halving: the library's own search for the largest circle takes for ever
+    /// in slivers.
+    double bearable(const GEOSGeometry* polygon, double most) const {
+        double area = 0.0, length = 0.0;
+        GEOSArea_r(handle_, polygon, &area);
+        GEOSLength_r(handle_, polygon, &length);
+        // A circle of this radius always fits.
+        double low = length > 0.0 ? std::min(area / length, most) : 0.0, high = most;
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = low + (high - low) / 2.0;
+            const Geometry ring = buffer(polygon, -middle);
+            const bool is_left = ring && GEOSisEmpty_r(handle_, ring.get()) == 0;
+            (is_left ? low : high) = middle;
+        }
+        return low;
     }
 
     /// Adds the rings of polygons as paths, moved to the origin. False where that failed.
@@ -130,24 +143,15 @@ class Geos {
     GEOSContextHandle_t handle_;
 };
 
-struct Extent {
-    double largest = 0.0;  ///< of all coordinates
-    double width = 0.0;
-};
-
-Extent extent_of(std::span<const core::Triangle2> area) {
-    core::Point2 low = area.front()[0], high = low;
-    for (const core::Triangle2& t : area) {
-        for (const core::Point2 p : t) {
-            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-        }
-    }
-    return {std::max({std::fabs(low.x), std::fabs(low.y), std::fabs(high.x), std::fabs(high.y)}),
-            std::max(high.x - low.x, high.y - low.y)};
+double largest_coordinate(std::span<const core::Triangle2> area) {
+    double largest = 0.0;
+    for (const core::Triangle2& t : area)
+        for (const core::Point2 p : t)
+            largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+    return largest;
 }
 
-/// Three digits of it, rounded down.
+/// Three digits of it, rounded down. Requires: above 0.
 double somewhat_less(double x) {
     const double unit = std::pow(10.0, std::floor(std::log10(x)) - 2.0);
     return std::floor(x / unit * (1.0 - 1e-6)) * unit;
@@ -158,8 +162,8 @@ std::variant<RingOffset, NoRing> offset(std::span<const core::Triangle2> triangl
                                         double distance) {
     using Reason = NoRing::Reason;
     if (triangles.empty()) return NoRing{Reason::Empty, 0.0};
-    const Extent extent = extent_of(triangles);
-    const double least = kLeastUlps * core::ulp(extent.largest + std::fabs(distance));
+    const double least =
+        kLeastUlps * core::ulp(largest_coordinate(triangles) + std::fabs(distance));
     if (std::fabs(distance) < least) return NoRing{Reason::TooSmall, least};
     const core::Point2 origin = triangles.front()[0];
     const Geos geos;
@@ -172,12 +176,13 @@ std::variant<RingOffset, NoRing> offset(std::span<const core::Triangle2> triangl
         return made;
     }
     double bears = HUGE_VAL;
+    int asked = 0;
     for (const GEOSGeometry* part : geos.parts_of(area.get())) {
         const Geos::Geometry ring = geos.buffer(part, distance);
         const std::size_t before = made.ring.paths.size();
         if (!ring || !geos.add_rings(ring.get(), origin, made.ring)) return NoRing{};
-        if (made.ring.paths.size() == before)
-            bears = std::min(bears, geos.inner_radius(part, extent.width));
+        if (made.ring.paths.size() == before && asked++ < kMostAsked)
+            bears = std::min(bears, geos.bearable(part, -distance));
     }
     if (bears == HUGE_VAL) return made;
     return NoRing{Reason::TooThin, bears > 0.0 ? somewhat_less(bears) : 0.0};

@@ -139,6 +139,7 @@ std::variant<PendingEdit, NoEdit> make_edit(const Session& session, const api::E
     edit.operation.edit = std::move(std::get<core::RegionEdit>(change));
     edit.operation.asked = {request.operation, request.polygon, request.moves_border,
                             request.rim,       request.taper,   {}};
+    edit.operation.asked.report.apply_ms = edit.limits.clock_ms();
     return edit;
 }
 

@@ -168,6 +168,7 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const EditOperation& edit,
                                     polygon->request.winding, edit.edit, budgets, &applied->undo);
     if (!report) return std::move(report.errors());
     Guard guard(tin, applied->undo);
+    report->apply_ms += edit.asked.report.apply_ms;
     kept_answer->report = *report;
     applied->written = std::make_shared<SlotChanges>(slot_changes(tin, applied->undo));
     applied->lasting_bytes = bytes_of(edit);

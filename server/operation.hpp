@@ -23,7 +23,7 @@ namespace tinsmith::server {
 /// An edit of what is inside a polygon that another operation brought. The rings that it needs are
 /// kept with it, so that running it again gives the same bytes.
 struct EditOperation {
-    api::EditAnswer asked;  ///< its report is empty
+    api::EditAnswer asked;  ///< its report is empty, but for the time that making the rings took
     core::RegionEdit edit;
 };
 

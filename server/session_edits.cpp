@@ -55,11 +55,12 @@ EditOutcome Session::edit_dry(const PendingEdit& edit) const {
     core::Tin trial = tin_;
     lock.unlock();
     const RunLimits limits = limits_of(edit, trial);
-    const auto report = core::edit_region(
+    auto report = core::edit_region(
         trial, {shape, own.chains, own.outside}, winding, edit.operation.edit,
         {limits.max_crossings, limits.max_new_triangles, {}, limits.cancelled, limits.clock_ms});
     if (!report) return report.errors();
     auto answer = std::make_shared<api::EditAnswer>(edit.operation.asked);
+    report->apply_ms += answer->report.apply_ms;
     answer->report = *report;
     EditResult result{now, std::move(answer), std::nullopt, std::nullopt};
     if (edit.want_mesh) result.mesh = trial.to_data();

@@ -15,7 +15,8 @@ VersionOutcome Session::tin_at(std::uint64_t wanted, const RunLimits& limits) co
     auto way = history_.way_to(wanted);
     if (const auto* gone = std::get_if<VersionGone>(&way)) return *gone;
     core::Tin tin = tin_;
-    const auto alive = history_.applied();  // what the views of polygons look at
+    // Views, of operations that a later change may drop: held while they are looked at.
+    const std::vector<AppliedPtr> held = history_.applied();
     const auto polygons = history_.polygons();
     lock.unlock();
     const auto& [taken, again] = std::get<WayBack>(way);
