@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 #include "api/problem.hpp"
@@ -81,23 +82,29 @@ std::optional<api::JobView> Jobs::add(Request request, Task task) {
     job->request = std::move(request);
     job->task = std::move(task);
     job->bytes = bytes;
-    queue_.push_back(job);
+    jobs_.emplace(job->view.id, job);
     try {
-        jobs_.emplace(job->view.id, job);
-        // A thread that waits takes it; there are never more threads than jobs so far.
-        if (threads_.size() < std::min<std::uint64_t>(bounds_.threads, count_)) {
-            threads_.emplace_back([this] { run_jobs(); });
-        }
+        queue_.push_back(job);
+        start_thread();
     } catch (...) {
-        if (threads_.empty()) {
-            queue_.pop_back();
-            jobs_.erase(job->view.id);
-            throw;
-        }
+        if (!queue_.empty() && queue_.back() == job) queue_.pop_back();
+        jobs_.erase(job->view.id);
+        throw;
     }
     bytes_ += bytes;
     queue_changed_.notify_one();
     return view_of(*job);
+}
+
+/// One more for one more job, up to their number; where the system has none left, those that there
+/// are will do. Requires: the lock.
+void Jobs::start_thread() {
+    if (threads_.size() >= std::min<std::uint64_t>(bounds_.threads, count_)) return;
+    try {
+        threads_.emplace_back([this] { run_jobs(); });
+    } catch (const std::system_error&) {
+        if (threads_.empty()) throw;
+    }
 }
 
 void Jobs::run_jobs() {

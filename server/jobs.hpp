@@ -88,6 +88,7 @@ class Jobs {
     using JobPtr = std::shared_ptr<Job>;
 
     static api::JobView view_of(const Job& job);
+    void start_thread();
     void run_jobs();
     void end(Job& job, Response answer) noexcept;
     void drop_old();

@@ -109,7 +109,7 @@ std::string request_text(const std::string& method, const std::string& target,
     std::string text = method + " " + target + " HTTP/1.1\r\nHost: localhost\r\n";
     for (const std::string& header : headers)
         text += header + "\r\n";
-    const bool has_body = method == "POST" || method == "PUT" || method == "PATCH";
+    const bool has_body = method == "POST" || method == "PUT" || method == "PATCH" || !body.empty();
     if (has_body) text += "Content-Length: " + std::to_string(body.size()) + "\r\n";
     return text + "\r\n" + body;
 }
