@@ -180,7 +180,7 @@ export const ELSEWHERE = {
   'key-reused': 'Retries.AreRefusedWhereTheRequestIsAnother',
   'key-in-use': 'Manners.ApplyARetryOnceThoughManyRace',
   'answer-not-kept': 'KeptAnswers.RememberWhatWasTooLargeToKeep',
-  'polygon-in-use': 'HistoryRoutes.KnowCascade',
+  'polygon-in-use': 'EditRoutes.GoWithTheirPolygonOrKeepIt',
   'replay-failed': 'HistoryRoutes.SayWhichOperationCannotBeDoneAgain',
   'out-of-memory': 'SessionStore.RefusesBeyondItsLimits',
   'job-unfinished': 'JobRoutes.AnswerAtOnceAndLater',
