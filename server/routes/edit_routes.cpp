@@ -30,7 +30,13 @@ Response refuse_edit(const Request& request, const std::string& polygon, const N
         return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, {*fault}));
     }
     const auto& errors = std::get<core::Errors>(no);
-    return refuse(request, api::problem_of_errors(errors, faults_of(errors, {})));
+    api::Faults faults = faults_of(errors, {});
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const bool is_of_polygon = errors[i].code == core::ErrorCode::NothingInside ||
+                                   errors[i].code == core::ErrorCode::NothingLeft;
+        if (is_of_polygon) faults[i].pointer = "/polygon";
+    }
+    return refuse(request, api::problem_of_errors(errors, std::move(faults)));
 }
 
 /// What is asked for beside the body.

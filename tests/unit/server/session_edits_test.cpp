@@ -7,6 +7,7 @@
 
 #include "core/mesh/build.hpp"
 #include "core/mesh/check.hpp"
+#include "core/regions/region.hpp"
 #include "server/edit_making.hpp"
 #include "server/session.hpp"
 #include "tests/support/random_input.hpp"
@@ -158,8 +159,40 @@ class RandomEdits {
         return made;
     }
 
+    /// Empty: an edit that leaves the border alone changed nothing that is not inside, by a bit.
+    std::string compare_outside(const core::Tin& before,
+                                const std::vector<core::TriangleId>& inside) {
+        const core::Tin after = session_->copy_tin();
+        for (std::uint32_t t = 0; t < before.triangle_count(); ++t) {
+            if (std::binary_search(inside.begin(), inside.end(), core::TriangleId{t})) continue;
+            const auto& corners = before.triangle({t}).vertices;
+            if (after.triangle({t}).vertices != corners) return "another triangle outside";
+            for (const core::VertexId v : corners)
+                if (after.vertex(v).point() != before.vertex(v).point())
+                    return "a vertex that is not inside has moved";
+        }
+        return "";
+    }
+
+    std::vector<core::TriangleId> inside(const std::string& id) {
+        return session_->look(
+            [&id](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t) {
+                for (const Polygon& polygon : polygons) {
+                    if (polygon.id() != id) continue;
+                    const core::ShapeReport& own = polygon.own_report();
+                    return core::find_region(tin, core::ConstraintHistory(tin),
+                                             {polygon.outline(), own.chains, own.outside},
+                                             polygon.request.winding)
+                        .triangles;
+                }
+                return std::vector<core::TriangleId>{};
+            });
+    }
+
     void add(Made made) {
         const core::Tin before = session_->copy_tin();
+        const auto region =
+            made.edit ? inside(made.edit->polygon) : std::vector<core::TriangleId>{};
         const Done tried = do_request(*session_, made, true);
         EXPECT_TRUE(test::same_tin(before, session_->copy_tin())) << "a dry run changes nothing";
         Done done = do_request(*session_, made);
@@ -172,6 +205,12 @@ class RandomEdits {
             return;
         }
         ++counts[kind];
+        const bool is_bounded = made.edit && !made.edit->moves_border &&
+                                (made.edit->rim || made.edit->operation == api::EditKind::Smooth);
+        if (is_bounded) {
+            EXPECT_EQ(compare_outside(before, region), "");
+            ++counts["bounded"];
+        }
         made.ids = std::get<0>(std::move(done));
         past_.push_back(now_);
         future_.clear();
@@ -265,7 +304,7 @@ TEST(SessionEdits, LeaveTheMeshOfAFreshSessionAfterAnyWayBackAndForth) {
         std::printf("%s: %d\n", what.c_str(), count);
     if (only != nullptr) return;
     for (const char* what : {"set", "offset", "smooth", "remove", "keep", "undo", "redo", "removed",
-                             "removed with edits", "in use", "polygons"})
+                             "removed with edits", "in use", "polygons", "bounded"})
         EXPECT_GT(counts[what], 40) << what;
 }
 
