@@ -312,18 +312,15 @@ std::optional<Refused> Raster::read_elevations() {
     if (auto no = check_blocks()) return no;
     messages_.forget();  // what was said of the reference system is no damage
     grid_.elevations.reserve(width_ * height_);
-    int block_width = 0;
-    int block_height = 0;
+    int block_width = 0, block_height = 0;
     GDALGetBlockSize(band_, &block_width, &block_height);
     const auto width = GDALGetRasterXSize(dataset_);
     const auto height = GDALGetRasterYSize(dataset_);
     // A row of blocks at a time, so that each block is decoded once.
     const int rows_at_once = std::clamp(block_height, 1, height);
     for (int row = 0; row < height; row += rows_at_once) {
-        if (limits_.progress && !limits_.progress(static_cast<double>(row) / height)) {
-            const Fault fault = reading_stopped();
-            return refused(FaultKind::Stopped, fault.code, fault.detail);
-        }
+        if (limits_.progress && !limits_.progress(static_cast<double>(row) / height))
+            return Refused{FaultKind::Stopped, reading_stopped()};
         const int rows = std::min(rows_at_once, height - row);
         // Only reserved, not touched, until its data is at hand: a header may promise anything.
         const std::size_t begin = grid_.elevations.size();

@@ -19,7 +19,7 @@ Session make_session(HistoryLimits limits = {}) {
 /// A square from corner to corner.
 PolygonEdit square_edit(double low, double high) {
     PolygonEdit edit;
-    edit.shapes = {{{{{low, low}, {high, low}, {high, high}, {low, high}}, true}}};
+    edit.shapes.push_back({{{{{low, low}, {high, low}, {high, high}, {low, high}}, true}}});
     edit.origins.resize(1);
     return edit;
 }
