@@ -9,7 +9,7 @@ Usage: ./test.sh [PART...]    installs what is missing, builds, tests; the fast 
 
   fast        formatting, then every test program on the release build, then the same
               operations by other compilers and options: the same bytes
-  readme      the README's curl lines against a server of its own
+  readme      the curl lines of the README and of the interface page, as printed
   node        what other people's readers say of our files (tests/*/package.json)
   sanitizers  every test again under ASan and UBSan, server and end-to-end tests under TSan
   tidy        clang-tidy over core, api and server (minutes; not among the default)
@@ -109,35 +109,14 @@ part_fast() {
     build release && run_ctest release
     heading "the same bytes from every compiler"
     check digest tests/digest/compare.sh build/release/tests/digest/operation_digest
-}
-
-# Starts a server on a free port, runs the README's lines against it, stops it.
-check_readme() {
-    local scratch server
-    scratch=$(mktemp -d)
-    build/release/tinsmith serve --port 0 --port-file "$scratch/port" >"$scratch/log" 2>&1 &
-    server=$!
-    for _ in {1..100}; do
-        [[ -s $scratch/port ]] && break
-        sleep 0.1
-    done
-    local outcome=1
-    if [[ -s $scratch/port ]]; then
-        docker/smoke.sh "http://127.0.0.1:$(<"$scratch/port")" && outcome=0
-    else
-        echo "the server wrote no port within 10 s"
-    fi
-    kill "$server" 2>/dev/null
-    wait "$server" 2>/dev/null
-    ((outcome == 0)) || cat "$scratch/log"
-    rm -rf "$scratch"
-    return "$outcome"
+    heading "what is promised has a test"
+    check contract tests/contract/check.sh release
 }
 
 part_readme() {
     build release tinsmith || return
-    heading "the README's lines"
-    check readme check_readme
+    heading "the README's lines, and those of the interface page"
+    check recipes tests/recipes/run.sh build/release/tinsmith
 }
 
 # Node's test runner ends with "# pass N" and "# fail N", or "ℹ pass N" from version 23 on.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include <nlohmann/json.hpp>
 
@@ -113,8 +114,29 @@ std::string_view problem_word(ProblemType type) {
     return row_of(type).word;
 }
 
+std::string_view problem_title(ProblemType type) {
+    return row_of(type).title;
+}
+
 int problem_status(ProblemType type) {
     return row_of(type).status;
+}
+
+std::span<const ProblemType> all_problems() {
+    static constexpr auto kTypes = [] {
+        std::array<ProblemType, kTable.size()> types{};
+        std::transform(kTable.begin(), kTable.end(), types.begin(),
+                       [](const Row& row) { return row.type; });
+        return types;
+    }();
+    return kTypes;
+}
+
+ProblemType problem_of_word(std::string_view word) {
+    const auto* found = std::find_if(kTable.begin(), kTable.end(),
+                                     [word](const Row& row) { return row.word == word; });
+    assert(found != kTable.end());
+    return found == kTable.end() ? Internal : found->type;
 }
 
 ProblemType problem_of_status(int status) {

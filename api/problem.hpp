@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -66,8 +67,17 @@ struct Problem {
 /// The stable word of a problem, "no-such-session"; its type is urn:tinsmith:problem:<word>.
 std::string_view problem_word(ProblemType type);
 
+/// What it is, in a few words: the same for every occurrence.
+std::string_view problem_title(ProblemType type);
+
 /// The HTTP status of a problem.
 int problem_status(ProblemType type);
+
+/// Every problem, in the order of the table.
+std::span<const ProblemType> all_problems();
+
+/// The problem of a word. Requires: one that the table has.
+ProblemType problem_of_word(std::string_view word);
 
 /// The problem that best says what an HTTP status says, for refusals made below the handlers.
 ProblemType problem_of_status(int status);

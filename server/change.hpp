@@ -27,8 +27,9 @@ struct ChangeRequest {
 /// How a version came about, copied out.
 struct ChangeCopy {
     api::ChangeView view;
-    std::shared_ptr<const core::Report> report;  ///< of a polygons request, else null
-    std::shared_ptr<const LocksDone> locks;      ///< of a locks request, else null
+    std::shared_ptr<const core::Report> report;     ///< of a polygons request, else null
+    std::shared_ptr<const LocksDone> locks;         ///< of a locks request, else null
+    std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit, else null
 };
 
 struct ChangeResult {

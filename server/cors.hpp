@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <string_view>
+
 #include "server/http_message.hpp"
 #include "server/policy.hpp"
 
@@ -14,5 +17,11 @@ namespace tinsmith::server {
 /// headers asked for those that the service reads. `Vary: Origin` wherever the answer depends on
 /// it.
 void allow_origin(const Policy& policy, const Request& request, Response& response);
+
+/// The request headers that mean something here, lower-case.
+std::span<const std::string_view> understood_headers();
+
+/// The headers of answers that pages may read, as a list.
+std::string_view exposed_headers();
 
 }  // namespace tinsmith::server

@@ -80,8 +80,9 @@ void copy_slots(const core::Tin& tin, api::MeshDelta& delta) {
 SlotChanges slot_changes(const core::Tin& tin, const core::Undo& undo) {
     SlotChanges changes{tin.vertex_count(), tin.triangle_count(), {}, {}};
     if (undo.empty()) return changes;
-    changes.vertex_floor = undo.front().vertex_count;
-    changes.triangle_floor = undo.front().triangle_count;
+    // From the least count on, slots were made or are gone; with a removal that is the last.
+    changes.vertex_floor = std::min(undo.front().vertex_count, tin.vertex_count());
+    changes.triangle_floor = std::min(undo.front().triangle_count, tin.triangle_count());
     // A slot stands in several records if several shapes met it. The oldest holds what it was
     // before; where a later one differs as well, the slot is named for nothing, never left out.
     for (const core::UndoRecord& record : undo) {

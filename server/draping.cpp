@@ -7,12 +7,21 @@ namespace tinsmith::server {
 
 namespace {
 
-api::DrapedLine drape_chain(const core::Tin& tin, const core::ConstraintHistory& history,
-                            const core::Chain& chain) {
-    api::DrapedLine line{chain.path, {}};
-    for (const core::VertexId v : history.expand(chain.vertices))
-        line.positions.push_back(tin.vertex(v).point());
-    return line;
+/// Adds the parts of the chain that the mesh holds. False: a removal took some of it.
+bool drape_chain(const core::Tin& tin, const core::ConstraintHistory& history,
+                 const core::Chain& chain, std::vector<api::DrapedLine>& lines) {
+    const std::size_t before = lines.size();
+    core::VertexId first, last;  // by name: where the mesh was parted at a vertex, the line goes on
+    for (const auto& part : history.lines_along(chain.vertices)) {
+        const bool goes_on = lines.size() > before && tin.name(part.front()) == last;
+        if (!goes_on) lines.push_back({chain.path, {}});
+        if (!first.valid()) first = tin.name(part.front());
+        last = tin.name(part.back());
+        for (std::size_t i = goes_on ? 1 : 0; i < part.size(); ++i)
+            lines.back().positions.push_back(tin.vertex(part[i]).point());
+    }
+    return lines.size() == before + 1 && first == chain.vertices.front() &&
+           last == chain.vertices.back();
 }
 
 }  // namespace
@@ -29,7 +38,9 @@ api::DrapedPolygon drape(const core::Tin& tin, const core::ConstraintHistory& hi
     draped.polygon_starts = polygon.origin().polygon_starts;
     draped.partly_outside = !report.outside.empty();
     for (const core::Chain& chain : report.chains) {
-        if (!chain.vertices.empty()) draped.lines.push_back(drape_chain(tin, history, chain));
+        if (chain.vertices.empty()) continue;
+        const bool is_whole = drape_chain(tin, history, chain, draped.lines);
+        draped.partly_outside = draped.partly_outside || !is_whole;
     }
     if (polygon.has_inside()) {
         const core::Region region =

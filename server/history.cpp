@@ -60,15 +60,15 @@ std::variant<WayBack, VersionGone> History::way_to(std::uint64_t version) const 
 
 std::vector<Polygon> History::polygons() const {
     std::vector<Polygon> list;
-    const auto add = [&list](const Operation& operation, const core::Report& report) {
-        const auto* request = std::get_if<PolygonsOperation>(&operation);
+    const auto add = [&list](const auto& done) {
+        const auto* request = std::get_if<PolygonsOperation>(&*done.operation);
         for (std::size_t i = 0; request != nullptr && i < request->shapes.size(); ++i)
-            list.push_back({*request, report, i});
+            list.push_back({*request, *done.report, i});
     };
     for (const Settled& settled : settled_)
-        add(*settled.operation, *settled.report);
+        add(settled);
     for (const AppliedPtr& applied : applied_)
-        add(*applied->operation, *applied->report);
+        add(*applied);
     return list;
 }
 

@@ -21,7 +21,7 @@ struct HistoryLimits {
     std::size_t bytes = std::size_t{256} << 20;
 };
 
-enum class ChangeKind { Created, Polygons, Locks, Undo, Redo, Removal };
+enum class ChangeKind { Created, Polygons, Locks, Edit, Undo, Redo, Removal };
 
 /// An operation to be run, and the version under which it is known.
 struct Rerun {
@@ -40,11 +40,12 @@ struct Exchange {
 struct Change {
     std::uint64_t version = 0;
     ChangeKind kind = ChangeKind::Created;
-    std::uint64_t of = 0;                        ///< undo, redo: the version they are about
-    std::vector<std::string> polygons;           ///< that it brought, took out, or is about
-    std::shared_ptr<const core::Report> report;  ///< of a polygons request
-    std::shared_ptr<const LocksDone> locks;      ///< of a locks request
-    std::size_t vertices = 0;                    ///< of the mesh at that version
+    std::uint64_t of = 0;                           ///< undo, redo: the version they are about
+    std::vector<std::string> polygons;              ///< that it brought, took out, or is about
+    std::shared_ptr<const core::Report> report;     ///< of a polygons request
+    std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit
+    std::shared_ptr<const LocksDone> locks;         ///< of a locks request
+    std::size_t vertices = 0;                       ///< of the mesh at that version
     std::size_t triangles = 0;
     std::vector<std::shared_ptr<const SlotChanges>> written;  ///< since the version before
     std::optional<Exchange> step;  ///< since the version before; nothing: no longer kept

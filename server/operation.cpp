@@ -10,6 +10,14 @@ namespace tinsmith::server {
 
 namespace {
 
+std::size_t bytes_of(const core::Shape& shape) {
+    std::size_t sum = 0;
+    for (const core::Path& path : shape.paths)
+        sum += sizeof path + path.points.size() * sizeof(core::Point2) +
+               path.elevations.size() * sizeof(double);
+    return sum;
+}
+
 /// About what one shape of a request holds in memory, its part of the report with it.
 std::size_t bytes_of(const PolygonsOperation& operation, const core::Report& report,
                      std::size_t shape) {
@@ -17,9 +25,7 @@ std::size_t bytes_of(const PolygonsOperation& operation, const core::Report& rep
     std::size_t sum = sizeof(core::Shape) + sizeof origin + sizeof(core::ShapeReport) +
                       origin.properties.size() + origin.client_id.size() +
                       origin.polygon_starts.size() * sizeof(std::size_t);
-    for (const core::Path& path : operation.shapes[shape].paths)
-        sum += sizeof path + path.points.size() * sizeof(core::Point2) +
-               path.elevations.size() * sizeof(double);
+    sum += bytes_of(operation.shapes[shape]);
     for (const core::Chain& chain : report.shapes[shape].chains)
         sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
     for (const core::OutsidePart& part : report.shapes[shape].outside)
@@ -27,11 +33,21 @@ std::size_t bytes_of(const PolygonsOperation& operation, const core::Report& rep
     return sum;
 }
 
+std::size_t bytes_of(const EditOperation& operation) {
+    std::size_t sum = sizeof operation + sizeof(api::EditAnswer) + operation.asked.polygon.size();
+    const auto* raised = std::get_if<core::ElevationEdit>(&operation.edit);
+    if (raised != nullptr && raised->strip)
+        sum += bytes_of(raised->strip->ring) + bytes_of(raised->strip->border);
+    return sum;
+}
+
 std::size_t bytes_of(const core::Undo& undo, const SlotChanges& written) {
     std::size_t sum = sizeof(Applied);
-    for (const core::UndoRecord& record : undo)
+    for (const core::UndoRecord& record : undo) {
         sum += sizeof record + record.triangles.size() * sizeof record.triangles[0] +
                record.vertices.size() * sizeof record.vertices[0];
+        if (record.removal) sum += record.removal->memory_bytes();
+    }
     return sum + (written.vertices.size() + written.triangles.size()) * sizeof(std::uint32_t);
 }
 
@@ -53,7 +69,8 @@ class Guard {
 };
 
 core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polygons,
-                                  std::shared_ptr<Applied> applied, const RunLimits& limits) {
+                                  std::shared_ptr<Applied> applied, const RunLimits& limits,
+                                  const PolygonFinder& /*find*/) {
     core::IntegrateOptions options = polygons.options;
     options.cancelled = limits.cancelled;
     options.clock_ms = limits.clock_ms;
@@ -94,7 +111,8 @@ bool found_nothing(const core::Errors& errors) {
 
 /// Whole or not at all: a path that is refused takes the others with it, all faults are told.
 core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
-                                  std::shared_ptr<Applied> applied, const RunLimits& limits) {
+                                  std::shared_ptr<Applied> applied, const RunLimits& limits,
+                                  const PolygonFinder& /*find*/) {
     const auto done = std::make_shared<LocksDone>();
     done->locked = locks.locked;
     Guard guard(tin, applied->undo);
@@ -133,12 +151,43 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
     return AppliedPtr(std::move(applied));
 }
 
+core::Result<AppliedPtr> run_kind(core::Tin& tin, const EditOperation& edit,
+                                  std::shared_ptr<Applied> applied, const RunLimits& limits,
+                                  const PolygonFinder& find) {
+    const std::optional<Polygon> polygon = find(edit.asked.polygon);
+    if (!polygon) {
+        return core::Error{core::ErrorCode::NothingInside,
+                           "the polygon \"" + edit.asked.polygon + "\" is no longer there",
+                           {}};
+    }
+    const core::ShapeReport& own = polygon->own_report();
+    const core::EditLimits budgets{
+        limits.max_crossings, limits.max_new_triangles, {}, limits.cancelled, limits.clock_ms};
+    const auto kept_answer = std::make_shared<api::EditAnswer>(edit.asked);
+    auto report = core::edit_region(tin, {polygon->outline(), own.chains, own.outside},
+                                    polygon->request.winding, edit.edit, budgets, &applied->undo);
+    if (!report) return std::move(report.errors());
+    Guard guard(tin, applied->undo);
+    report->apply_ms += edit.asked.report.apply_ms;
+    kept_answer->report = *report;
+    applied->written = std::make_shared<SlotChanges>(slot_changes(tin, applied->undo));
+    applied->lasting_bytes = bytes_of(edit);
+    applied->record_bytes = bytes_of(applied->undo, *applied->written);
+    applied->answer = kept_answer;
+    guard.keep();
+    return AppliedPtr(std::move(applied));
+}
+
 /// Polygons stand on the ground alone, never on one another by name.
 bool names(const PolygonsOperation&, std::string_view) {
     return false;
 }
 bool names(const LocksOperation&, std::string_view) {
     return false;
+}
+
+bool names(const EditOperation& edit, std::string_view id) {
+    return edit.asked.polygon == id;
 }
 
 Remainder without(const PolygonsOperation& polygons, const OperationPtr& whole,
@@ -158,10 +207,19 @@ Remainder without(const LocksOperation&, const OperationPtr& whole, std::string_
     return {false, whole};
 }
 
+Remainder without(const EditOperation&, const OperationPtr& whole, std::string_view) {
+    return {false, whole};
+}
+
 const std::vector<std::string>& ids_of(const PolygonsOperation& polygons) {
     return polygons.ids;
 }
 const std::vector<std::string>& ids_of(const LocksOperation&) {
+    static const std::vector<std::string> kNone;
+    return kNone;
+}
+
+const std::vector<std::string>& ids_of(const EditOperation&) {
     static const std::vector<std::string> kNone;
     return kNone;
 }
@@ -171,13 +229,23 @@ const std::vector<std::string>& ids_of(const LocksOperation&) {
 // Each visits by overload: a kind that lacks one of them does not compile.
 
 core::Result<AppliedPtr> run(core::Tin& tin, std::uint64_t version, OperationPtr operation,
-                             const RunLimits& limits) {
+                             const RunLimits& limits, const PolygonFinder& find) {
     auto applied = std::make_shared<Applied>();
     applied->version = version;
     applied->operation = std::move(operation);
     const Operation& any = *applied->operation;
     return std::visit(
-        [&](const auto& kind) { return run_kind(tin, kind, std::move(applied), limits); }, any);
+        [&](const auto& kind) { return run_kind(tin, kind, std::move(applied), limits, find); },
+        any);
+}
+
+std::optional<Polygon> polygon_of(const Applied& applied, std::string_view id) {
+    const auto* request = std::get_if<PolygonsOperation>(&*applied.operation);
+    if (request == nullptr) return std::nullopt;
+    const auto found = std::find(request->ids.begin(), request->ids.end(), id);
+    if (found == request->ids.end()) return std::nullopt;
+    return Polygon{*request, *applied.report,
+                   static_cast<std::size_t>(found - request->ids.begin())};
 }
 
 bool names_polygon(const Operation& operation, std::string_view id) {

@@ -5,10 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "api/edit_answer.hpp"
+#include "core/edit/region_edit.hpp"
 #include "core/integrate/integrator.hpp"
 #include "server/delta.hpp"
 #include "server/locks.hpp"
@@ -16,9 +20,16 @@
 
 namespace tinsmith::server {
 
+/// An edit of what is inside a polygon that another operation brought. The rings that it needs are
+/// kept with it, so that running it again gives the same bytes.
+struct EditOperation {
+    api::EditAnswer asked;  ///< its report is empty, but for the time that making the rings took
+    core::RegionEdit edit;
+};
+
 /// What a session was told to do, whole enough to be done again. Each kind is one alternative; the
 /// functions below say what a kind has to know of itself.
-using Operation = std::variant<PolygonsOperation, LocksOperation>;
+using Operation = std::variant<PolygonsOperation, LocksOperation, EditOperation>;
 using OperationPtr = std::shared_ptr<const Operation>;
 
 /// What one run of an operation may cost. Never kept with the operation.
@@ -38,8 +49,9 @@ struct RunLimits {
 struct Applied {
     std::uint64_t version = 0;  ///< of the session when it was first done
     OperationPtr operation;
-    std::shared_ptr<const core::Report> report;  ///< of no shape for kinds that bring none
-    std::shared_ptr<const LocksDone> locks;      ///< of a locks request, else null
+    std::shared_ptr<const core::Report> report;     ///< of a polygons request, else null
+    std::shared_ptr<const LocksDone> locks;         ///< of a locks request, else null
+    std::shared_ptr<const api::EditAnswer> answer;  ///< of an edit, else null
     core::Undo undo;
     std::shared_ptr<const SlotChanges> written;
     std::size_t lasting_bytes = 0;  ///< about what operation and report hold in memory
@@ -47,9 +59,16 @@ struct Applied {
 };
 using AppliedPtr = std::shared_ptr<const Applied>;
 
+/// The polygon of that id which an operation before this one brought, as it lies in the mesh.
+using PolygonFinder = std::function<std::optional<Polygon>(std::string_view)>;
+
 /// Does the operation. An error, or an exception, leaves the mesh as it was.
+/// Requires: the polygons that it works on are found.
 core::Result<AppliedPtr> run(core::Tin& tin, std::uint64_t version, OperationPtr operation,
-                             const RunLimits& limits);
+                             const RunLimits& limits, const PolygonFinder& find);
+
+/// The polygon of that id, if the operation brought it.
+std::optional<Polygon> polygon_of(const Applied& applied, std::string_view id);
 
 /// Whether the operation works on a polygon that another one brought.
 bool names_polygon(const Operation& operation, std::string_view id);

@@ -45,9 +45,6 @@ struct VolumeAnswer {
     std::uint64_t other_version = 0;
 };
 
-/// What a question names that the session has not, or that has no inside.
-enum class PolygonFault { NotThere, NoInside };
-
 using ProfileOutcome = std::variant<ProfileAnswer, core::Errors>;
 using VolumeOutcome =
     std::variant<VolumeAnswer, core::Errors, PolygonFault, VersionGone, VersionAhead>;

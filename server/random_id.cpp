@@ -4,19 +4,16 @@
 #include <algorithm>
 #include <random>
 
+#include "server/hex.hpp"
+
 namespace tinsmith::server {
 
 std::string random_hex(std::size_t bytes) {
-    static constexpr std::string_view kDigits = "0123456789abcdef";
     std::random_device source;  // getrandom(2) or the processor's own generator
-    std::string out;
-    out.reserve(bytes * 2);
-    for (std::size_t i = 0; i < bytes; ++i) {
-        const auto byte = source() & 0xffU;
-        out.push_back(kDigits[byte >> 4]);
-        out.push_back(kDigits[byte & 15U]);
-    }
-    return out;
+    std::string out(bytes, '\0');
+    for (char& byte : out)
+        byte = static_cast<char>(source() & 0xffU);
+    return hex_of(out);
 }
 
 std::string random_uuid() {

@@ -23,11 +23,18 @@ RunLimits limits_of_part(const RunLimits& limits, std::size_t index, std::size_t
 
 using Replayed = std::variant<std::vector<AppliedPtr>, ReplayFailure>;
 
+/// Runs operations one after the other. A failure leaves what was run before it in the mesh.
+/// Requires: `find` knows the polygons of the operations before.
+Replayed run_all(core::Tin& tin, std::span<const Rerun> wanted, const RunLimits& limits,
+                 const PolygonFinder& find);
+
 /// Takes the newest operations back and runs others in their place. A failure, or an exception,
-/// leaves the mesh as it was. Requires: `taken` are the newest on the mesh, oldest first.
+/// leaves the mesh as it was. Requires: `taken` are the newest on the mesh, oldest first; `find`
+/// knows the polygons of those before.
 /// Cost: what was taken back and what is run; and a copy of the mesh where more than one of these
 /// might have to be made undone.
 Replayed replace_newest(core::Tin& tin, std::span<const AppliedPtr> taken,
-                        std::span<const Rerun> wanted, const RunLimits& limits);
+                        std::span<const Rerun> wanted, const RunLimits& limits,
+                        const PolygonFinder& find);
 
 }  // namespace tinsmith::server

@@ -47,15 +47,6 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
                           edit.winding, std::move(options)});
 }
 
-/// The edit is made by now: want of memory must not look as if it had failed.
-std::optional<core::MeshData> copy_if_possible(const core::Tin& tin) {
-    try {
-        return tin.to_data();
-    } catch (const std::bad_alloc&) {
-        return std::nullopt;
-    }
-}
-
 bool is_expected(const PolygonEdit& edit, std::uint64_t version) {
     return !edit.expected_version || *edit.expected_version == version;
 }
@@ -144,56 +135,73 @@ void Session::refresh_view() noexcept {
     view_.memory_bytes = mesh_bytes_ + history_.memory_bytes();
 }
 
-PolygonOutcome Session::integrate(PolygonEdit edit) {
-    if (edit.dry_run) return integrate_dry(edit);
-    const auto lock = lock_to_write();
-    const std::uint64_t before = version();
-    if (!is_expected(edit, before)) return VersionMismatch{before};
+core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kind,
+                                          std::vector<std::string> polygons,
+                                          const RunLimits& limits) {
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
-    const RunLimits limits = limits_of(edit, tin_);
-    PolygonResult result;
-    result.version = before + 1;
-    result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
-    const OperationPtr operation = operation_of(edit, result.polygon_ids);
-    auto applied = append(ChangeKind::Polygons, operation, limits);
-    if (!applied) return std::move(applied.errors());
-    result.report = (*applied)->report;
-    if (edit.want_mesh) result.mesh = copy_if_possible(tin_);
-    if (edit.want_delta) result.delta = delta_if_possible(before);
-    return result;
-}
-
-/// Runs one operation more and keeps it as the next version. An error leaves everything as it was.
-/// Requires: the writer's lock.
-core::Result<AppliedPtr> Session::append(ChangeKind kind, const OperationPtr& operation,
-                                         const RunLimits& limits) {
-    // Memory first: once the mesh has changed, nothing may fail before it is on record.
+    const std::uint64_t made = version() + 1;
     Edit step;
-    step.version = version() + 1;
+    step.version = made;
     step.first = history_.base() + history_.applied().size();
-    step.added.push_back({step.version, operation});
-    step.polygons = polygon_ids(*operation);
+    step.added.push_back({made, operation});
+    step.polygons = polygons;
     std::vector<AppliedPtr> done(1);
     Change change;
-    change.version = step.version;
+    change.version = made;
     change.kind = kind;
-    change.polygons = step.polygons;
+    change.polygons = std::move(polygons);
     change.step = Exchange{step.first, {}, step.added};
     change.written.resize(1);
     history_.prepare(1);
-    auto applied = run(tin_, step.version, operation, limits);
+    auto applied = run(tin_, made, std::move(operation), limits, polygon_finder());
     if (!applied) return applied;
     if (kind == ChangeKind::Polygons) change.report = (*applied)->report;
     change.locks = (*applied)->locks;
+    change.answer = (*applied)->answer;
     change.vertices = tin_.vertex_count();
     change.triangles = tin_.triangle_count();
     change.written[0] = (*applied)->written;
     step.added_bytes = (*applied)->lasting_bytes;
     done[0] = *applied;
     history_.make(std::move(step), std::move(done), std::move(change));
-    next_polygon_ += polygon_ids(*operation).size();
-    refresh_view();
     return applied;
+}
+
+PolygonFinder Session::polygon_finder() const {
+    return [this](std::string_view id) -> std::optional<Polygon> {
+        for (const Polygon& polygon : history_.polygons())
+            if (polygon.id() == id) return polygon;
+        return std::nullopt;
+    };
+}
+
+PolygonOutcome Session::integrate(PolygonEdit edit) {
+    if (edit.dry_run) return integrate_dry(edit);
+    const auto lock = lock_to_write();
+    const std::uint64_t before = version();
+    if (!is_expected(edit, before)) return VersionMismatch{before};
+    const RunLimits limits = limits_of(edit, tin_);
+    PolygonResult result;
+    result.version = before + 1;
+    result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
+    const auto applied = perform(operation_of(edit, result.polygon_ids), ChangeKind::Polygons,
+                                 result.polygon_ids, limits);
+    if (!applied) return applied.errors();
+    result.report = (*applied)->report;
+    next_polygon_ += result.polygon_ids.size();
+    refresh_view();
+    if (edit.want_mesh) result.mesh = mesh_if_possible();
+    if (edit.want_delta) result.delta = delta_if_possible(before);
+    return result;
+}
+
+/// The edit is made by now: want of memory must not look as if it had failed.
+std::optional<core::MeshData> Session::mesh_if_possible() const {
+    try {
+        return tin_.to_data();
+    } catch (const std::bad_alloc&) {
+        return std::nullopt;
+    }
 }
 
 PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {

@@ -17,6 +17,7 @@
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
 #include "server/change.hpp"
+#include "server/edit.hpp"
 #include "server/history.hpp"
 #include "server/locks.hpp"
 #include "server/polygon.hpp"
@@ -97,6 +98,8 @@ class Session {
     /// At most `limit` locked edges, in order, those after one with this number of a side; nothing:
     /// from the first on. Cost: the whole mesh.
     LockedCopy locked_after(std::optional<std::uint32_t> side, std::size_t limit) const;
+    /// Edits the mesh inside a polygon. A dry run works on a copy and holds no writer's lock.
+    EditOutcome edit(PendingEdit edit);
 
     /// Takes the newest edit back that was not taken back.
     ChangeOutcome undo(const ChangeRequest& request);
@@ -117,11 +120,17 @@ class Session {
   private:
     PolygonOutcome integrate_dry(const PolygonEdit& edit) const;
     LocksOutcome lock_dry(const LocksEdit& edit, const RunLimits& limits) const;
-    core::Result<AppliedPtr> append(ChangeKind kind, const OperationPtr& operation,
-                                    const RunLimits& limits);
+    EditOutcome edit_dry(const PendingEdit& edit) const;
+    /// Runs one operation more and keeps it as the next version. An error leaves everything as it
+    /// was. Requires: the writer's lock.
+    core::Result<AppliedPtr> perform(OperationPtr operation, ChangeKind kind,
+                                     std::vector<std::string> polygons, const RunLimits& limits);
+    /// Of the operations that the mesh holds now. Requires: a lock, for as long as it is in use.
+    PolygonFinder polygon_finder() const;
     /// What `replace` does to the newest operations, and how that is kept.
     struct Replacement;
     ChangeOutcome replace(const ChangeRequest& request, Replacement replacement);
+    std::optional<core::MeshData> mesh_if_possible() const;
     std::optional<api::MeshDelta> delta_if_possible(std::uint64_t from) const;
     api::MeshDelta delta_from(const Change& start) const;
     std::uint64_t version() const { return history_.version(); }

@@ -19,6 +19,8 @@ std::string_view word_of(ChangeKind kind) {
             return "polygons";
         case ChangeKind::Locks:
             return "locks";
+        case ChangeKind::Edit:
+            return "edit";
         case ChangeKind::Undo:
             return "undo";
         case ChangeKind::Redo:
@@ -135,8 +137,9 @@ ChangeOutcome Session::replace(const ChangeRequest& request, Replacement replace
     change.written.reserve(taken.size() + replacement.wanted.size());
     for (const AppliedPtr& old : taken)
         change.written.push_back(old->written);
-    ChangeResult result{{view_of(change), nullptr, nullptr}, std::nullopt};
-    auto replayed = replace_newest(tin_, taken, replacement.wanted, request.limits);
+    ChangeResult result{{view_of(change), nullptr, nullptr, nullptr}, std::nullopt};
+    auto replayed =
+        replace_newest(tin_, taken, replacement.wanted, request.limits, polygon_finder());
     if (auto* failure = std::get_if<ReplayFailure>(&replayed)) return std::move(*failure);
 
     auto& done = std::get<std::vector<AppliedPtr>>(replayed);
@@ -178,7 +181,7 @@ std::variant<ChangeCopy, VersionGone, VersionAhead> Session::change_at(std::uint
     if (wanted > version()) return VersionAhead{version()};
     const Change* change = history_.change_at(wanted);
     if (change == nullptr) return VersionGone{history_.changes().front().version};
-    return ChangeCopy{view_of(*change), change->report, change->locks};
+    return ChangeCopy{view_of(*change), change->report, change->locks, change->answer};
 }
 
 std::variant<api::MeshDelta, VersionGone, VersionAhead> Session::delta_since(

@@ -20,9 +20,10 @@ LocksOutcome Session::set_locks(LocksEdit edit, RunLimits limits) {
     const auto lock = lock_to_write();
     const std::uint64_t before = version();
     if (!is_expected(edit, before)) return VersionMismatch{before};
-    auto applied = append(ChangeKind::Locks,
-                          std::make_shared<const Operation>(std::move(edit.operation)), limits);
+    auto applied = perform(std::make_shared<const Operation>(std::move(edit.operation)),
+                           ChangeKind::Locks, {}, limits);
     if (!applied) return std::move(applied.errors());
+    refresh_view();
     LocksResult result{before + 1, (*applied)->locks, std::nullopt};
     if (edit.want_delta) result.delta = delta_if_possible(before);
     return result;
@@ -34,7 +35,8 @@ LocksOutcome Session::lock_dry(const LocksEdit& edit, const RunLimits& limits) c
     if (!is_expected(edit, now)) return VersionMismatch{now};
     core::Tin trial = tin_;
     lock.unlock();
-    auto applied = run(trial, now, std::make_shared<const Operation>(edit.operation), limits);
+    const PolygonFinder none = [](std::string_view) { return std::optional<Polygon>(); };
+    auto applied = run(trial, now, std::make_shared<const Operation>(edit.operation), limits, none);
     if (!applied) return std::move(applied.errors());
     return LocksResult{now, (*applied)->locks, std::nullopt};
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A session's mesh as it was.
+#include <algorithm>
 #include <utility>
 
 #include "core/integrate/integrator.hpp"
+#include "server/replay.hpp"
 #include "server/session.hpp"
 
 namespace tinsmith::server {
@@ -13,15 +15,19 @@ VersionOutcome Session::tin_at(std::uint64_t wanted, const RunLimits& limits) co
     auto way = history_.way_to(wanted);
     if (const auto* gone = std::get_if<VersionGone>(&way)) return *gone;
     core::Tin tin = tin_;
+    // Views, of operations that a later change may drop: held while they are looked at.
+    const std::vector<AppliedPtr> held = history_.applied();
+    const auto polygons = history_.polygons();
     lock.unlock();
     const auto& [taken, again] = std::get<WayBack>(way);
     for (auto applied = taken.rbegin(); applied != taken.rend(); ++applied)
         core::take_back(tin, (*applied)->undo);
-    for (std::size_t i = 0; i < again.size(); ++i) {
-        auto applied =
-            run(tin, again[i].version, again[i].operation, limits_of_part(limits, i, again.size()));
-        if (!applied) return std::move(applied.errors());
-    }
+    const PolygonFinder find = [&polygons](std::string_view id) {
+        const auto found = std::ranges::find(polygons, id, &Polygon::id);
+        return found == polygons.end() ? std::optional<Polygon>() : *found;
+    };
+    auto done = run_all(tin, again, limits, find);
+    if (auto* failure = std::get_if<ReplayFailure>(&done)) return std::move(failure->errors);
     return tin;
 }
 

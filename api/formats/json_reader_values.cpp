@@ -149,4 +149,11 @@ void Tuple::Item::scalar(Reader& reader, const Scalar& value) {
     tuple_.numbers_[tuple_.count_ - 1] = value.number;
 }
 
+void Number::scalar(Reader& reader, const Scalar& value) {
+    if (!value.is_number()) return Value::scalar(reader, value);
+    if (!acceptable_coordinate(value.number))
+        return reader.fault("NUMBER_OUT_OF_RANGE", coordinate_out_of_range());
+    number_ = value.number;
+}
+
 }  // namespace tinsmith::api::json

@@ -124,6 +124,54 @@ class Tuple : public Value, public Container {
     Item item_;
 };
 
+/// An array of tuples, up to a limit.
+template <std::size_t Size>
+class TupleList : public Value, public Container {
+  public:
+    TupleList(std::string_view item, std::string_view list, std::size_t most)
+        : item_(item, *this), list_(list), most_(most) {}
+
+    Container* array(Reader&) override { return this; }
+    Value* element(Reader& reader) override {
+        if (items_.size() < most_) return &item_;
+        reader.stop(FaultKind::TooLarge,
+                    {"TOO_MANY_POINTS",
+                     "More than " + std::to_string(most_) + " points; no more are taken.",
+                     reader.pointer()});
+        return nullptr;
+    }
+    const std::vector<std::array<double, Tuple::kMost>>& items() const { return items_; }
+
+  protected:
+    std::string_view expected() const override { return list_; }
+
+  private:
+    struct Item : Tuple {
+        Item(std::string_view what, TupleList& the_list)
+            : Tuple(Size, Items::Coordinate, what), list(the_list) {}
+        void complete(Reader&) override { list.items_.push_back(numbers()); }
+        TupleList& list;
+    };
+
+    Item item_;
+    std::string_view list_;
+    std::size_t most_;
+    std::vector<std::array<double, Tuple::kMost>> items_;
+};
+
+/// A number as large as a coordinate may be.
+class Number : public Value {
+  public:
+    void scalar(Reader& reader, const Scalar& value) override;
+    double number() const { return number_; }
+
+  protected:
+    std::string_view expected() const override { return "a number"; }
+
+  private:
+    double number_ = 0.0;
+};
+
 /// Whether a coordinate can be worked with; if not, what to tell.
 bool acceptable_coordinate(double value);
 std::string coordinate_out_of_range();

@@ -8,6 +8,7 @@
 #include "api/formats/geojson_shape.hpp"
 #include "api/formats/json_reader.hpp"
 #include "api/formats/json_reader_values.hpp"
+#include "api/formats/plane_members.hpp"
 
 namespace tinsmith::api {
 
@@ -18,43 +19,8 @@ using json::Object;
 using json::quoted;
 using json::Reader;
 using json::Scalar;
-using json::Tuple;
+using json::TupleList;
 using json::Value;
-
-/// An array of tuples, up to a limit.
-template <std::size_t Size>
-class TupleList : public Value, public Container {
-  public:
-    TupleList(std::string_view item, std::string_view list, std::size_t most)
-        : item_(item, *this), list_(list), most_(most) {}
-
-    Container* array(Reader&) override { return this; }
-    Value* element(Reader& reader) override {
-        if (items_.size() < most_) return &item_;
-        reader.stop(FaultKind::TooLarge,
-                    {"TOO_MANY_POINTS",
-                     "More than " + std::to_string(most_) + " points; no more are taken.",
-                     reader.pointer()});
-        return nullptr;
-    }
-    std::vector<std::array<double, Tuple::kMost>>& items() { return items_; }
-
-  protected:
-    std::string_view expected() const override { return list_; }
-
-  private:
-    struct Item : Tuple {
-        Item(std::string_view what, TupleList& the_list)
-            : Tuple(Size, Items::Coordinate, what), list(the_list) {}
-        void complete(Reader&) override { list.items_.push_back(numbers()); }
-        TupleList& list;
-    };
-
-    Item item_;
-    std::string_view list_;
-    std::size_t most_;
-    std::vector<std::array<double, Tuple::kMost>> items_;
-};
 
 class PointsBody : public Object {
   public:
@@ -72,24 +38,6 @@ class PointsBody : public Object {
 
   private:
     TupleList<2> points_;
-};
-
-/// A number as large as a coordinate may be.
-class Number : public Value {
-  public:
-    void scalar(Reader& reader, const Scalar& value) override {
-        if (!value.is_number()) return Value::scalar(reader, value);
-        if (!json::acceptable_coordinate(value.number))
-            return reader.fault("NUMBER_OUT_OF_RANGE", json::coordinate_out_of_range());
-        number_ = value.number;
-    }
-    double number() const { return number_; }
-
-  protected:
-    std::string_view expected() const override { return "a number"; }
-
-  private:
-    double number_ = 0.0;
 };
 
 /// A whole number from 1 on.
@@ -113,13 +61,10 @@ class Version : public Value {
 class AgainstObject : public Object {
   public:
     explicit AgainstObject(Against& out) : out_(out) {
-        expect({{"elevation", &elevation_},
-                {"plane", &plane_},
-                {"slope", &slope_},
-                {"azimuth", &azimuth_},
-                {"point", &point_},
-                {"session", &session_},
-                {"version", &version_}});
+        std::vector<json::Member> members = plane_.members();
+        members.push_back({"session", &session_});
+        members.push_back({"version", &version_});
+        expect(std::move(members));
     }
 
   protected:
@@ -127,70 +72,29 @@ class AgainstObject : public Object {
 
     void begun(Reader& reader) override { faults_before_ = reader.log().size(); }
     void ended(Reader& reader) override {
-        const bool sloping = has("slope") || has("azimuth") || has("point");
-        const int given = has("elevation") + has("plane") + has("session") + has("version") +
-                          static_cast<int>(sloping);
+        const int given = plane_.count(*this) + has("session") + has("version");
         if (given != 1) {
             reader.fault(given == 0 ? "MEMBER_MISSING" : "CONTRADICTION",
                          "Give one thing to compare with: \"elevation\", or \"plane\" of three "
                          "points, or \"slope\", \"azimuth\" and \"point\", or \"session\", or "
                          "\"version\".");
         }
-        for (const std::string_view name : {"slope", "azimuth", "point"}) {
-            if (sloping && !has(name)) {
-                reader.fault("MEMBER_MISSING",
-                             quoted(name) +
-                                 " is needed with the other two of slope, azimuth and "
-                                 "point.");
-            }
-        }
-        if (reader.log().size() == faults_before_) take(reader);
-    }
-
-  private:
-    void take(Reader& reader) {
+        plane_.check(reader, *this);
+        if (reader.log().size() != faults_before_) return;
         if (has("session")) {
             out_ = OtherSession{session_text_};
         } else if (has("version")) {
             out_ = EarlierVersion{version_.version()};
-        } else if (has("elevation")) {
-            out_ = core::level_plane(elevation_.number());
-        } else if (has("plane")) {
-            take_plane(reader);
-        } else if (has("slope")) {
-            out_ =
-                core::sloping_plane(slope_.number(), azimuth_.number(), point_of(point_.numbers()));
+        } else if (const auto plane = plane_.take(reader, *this)) {
+            out_ = *plane;
         }
-    }
-    void take_plane(Reader& reader) {
-        const auto& points = plane_.items();
-        const auto refuse = [&](std::string code, std::string detail) {
-            reader.add(FaultKind::Invalid, {std::move(code), std::move(detail),
-                                            json::pointer_to(reader.pointer(), "plane")});
-        };
-        if (points.size() != 3) {
-            return refuse("WRONG_LENGTH", "A plane is given by three points [x, y, z]; here are " +
-                                              std::to_string(points.size()) + ".");
-        }
-        const auto plane =
-            core::plane_through(point_of(points[0]), point_of(points[1]), point_of(points[2]));
-        if (!plane) {
-            return refuse("PLANE_UPRIGHT",
-                          "The three points are in one line in plan: no plane that has one "
-                          "elevation at each position goes through them. Move one.");
-        }
-        out_ = *plane;
-    }
-    static core::Point3 point_of(const std::array<double, Tuple::kMost>& numbers) {
-        return {numbers[0], numbers[1], numbers[2]};
     }
 
+  private:
     Against& out_;
     std::size_t faults_before_ = 0;
     std::string session_text_;
-    Number elevation_, slope_, azimuth_;
-    TupleList<3> plane_{"a point [x, y, z]", "an array of three points [x, y, z]", 3};
-    Tuple point_{3, Tuple::Items::Coordinate, "a point [x, y, z]"};
+    json::PlaneMembers plane_;
     json::Text session_{session_text_};
     Version version_;
 };

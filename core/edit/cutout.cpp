@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/integrate/integrator.hpp"
+#include "core/edit/ring.hpp"
 #include "core/mesh/build.hpp"
 
 namespace tinsmith::core {
@@ -21,17 +21,6 @@ Shape outline_of(const Shape& shape) {
     return outline;
 }
 
-/// All of a shape that meets the mesh nowhere, which may still lie around it.
-std::vector<OutsidePart> all_outside(const Shape& shape) {
-    std::vector<OutsidePart> parts;
-    for (std::size_t i = 0; i < shape.paths.size(); ++i) {
-        if (shape.paths[i].points.empty()) continue;
-        parts.push_back({i, shape.paths[i].points});
-        parts.back().points.push_back(shape.paths[i].points.front());
-    }
-    return parts;
-}
-
 Result<Region> cut_in(Tin& tin, const Shape& shape, Winding winding, const CutoutLimits& limits) {
     IntegrateOptions options;
     options.improve = Improve::None;
@@ -39,15 +28,9 @@ Result<Region> cut_in(Tin& tin, const Shape& shape, Winding winding, const Cutou
     options.max_new_triangles = limits.max_new_triangles;
     options.cancelled = limits.cancelled;
     options.progress = limits.progress;
-    auto report = integrate(tin, {&shape, 1}, options);
-    ShapeReport found;
-    if (report) {
-        found = std::move(report->shapes.front());
-    } else if (report.errors().front().code == ErrorCode::OutsideMesh) {
-        found.outside = all_outside(shape);
-    } else {
-        return std::move(report.errors());
-    }
+    auto report = integrate_ring(tin, shape, options);
+    if (!report) return std::move(report.errors());
+    const ShapeReport& found = report->shapes.front();
     return find_region(tin, ConstraintHistory(tin), {shape, found.chains, found.outside}, winding);
 }
 
@@ -89,6 +72,22 @@ Result<double> area_inside(const Shape& shape, Winding winding, const CutoutLimi
     auto whole = cut_in(*frame, outline, winding, limits);
     if (!whole) return std::move(whole.errors());
     return whole->plan_area;
+}
+
+Result<std::vector<Triangle2>> triangles_inside(const Shape& shape, Winding winding,
+                                                const CutoutLimits& limits) {
+    const Shape outline = outline_of(shape);
+    auto frame = frame_around(outline);
+    if (!frame) return std::vector<Triangle2>{};
+    auto whole = cut_in(*frame, outline, winding, limits);
+    if (!whole) return std::move(whole.errors());
+    std::vector<Triangle2> triangles;
+    triangles.reserve(whole->triangles.size());
+    for (const TriangleId t : whole->triangles) {
+        const auto& [a, b, c] = frame->triangle(t).vertices;
+        triangles.push_back({frame->plan(a), frame->plan(b), frame->plan(c)});
+    }
+    return triangles;
 }
 
 }  // namespace tinsmith::core

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
+#include "core/edit/overlay.hpp"
 #include "core/integrate/shape.hpp"
 #include "core/mesh/tin.hpp"
 #include "core/regions/region.hpp"
@@ -36,5 +38,10 @@ Result<Cutout> cut_out(Tin tin, const Shape& shape, Winding winding,
 /// Plan area inside the shape's closed paths, by the same rules and with the same errors. Cost:
 /// that of integrating it into two triangles around it.
 Result<double> area_inside(const Shape& shape, Winding winding, const CutoutLimits& limits = {});
+
+/// The inside of the shape's closed paths, by the same rules and at the same cost, as triangles
+/// that fill it and share whole edges alone; none where it has no inside.
+Result<std::vector<Triangle2>> triangles_inside(const Shape& shape, Winding winding,
+                                                const CutoutLimits& limits = {});
 
 }  // namespace tinsmith::core

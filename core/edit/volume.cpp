@@ -6,75 +6,13 @@
 #include <utility>
 
 #include "core/edit/box_tree.hpp"
-#include "core/edit/neumaier_sum.hpp"
+#include "core/edit/cut_and_fill.hpp"
 #include "core/edit/overlay.hpp"
 #include "core/predicates/orientation.hpp"
 
 namespace tinsmith::core {
 
 namespace {
-
-/// Sums what linear differences over triangles enclose with zero, above and below.
-class CutAndFill {
-  public:
-    /// Over a triangle of that area, with the differences at its corners.
-    void add(double area, std::array<double, 3> d) {
-        area_.add(area);
-        const auto [least, most] = std::minmax({d[0], d[1], d[2]});
-        if (least >= 0.0) {
-            if (most > 0.0) above(area, d[0], d[1], d[2]);
-        } else if (most <= 0.0) {
-            below(area, d[0], d[1], d[2]);
-        } else {
-            add_bent(area, d);
-        }
-    }
-    void count_pair() { ++pairs_; }
-
-    Volume result() const {
-        const auto of = [](const NeumaierSum& sum) { return std::max(sum.value(), 0.0); };
-        return {of(cut_), of(fill_), of(area_), of(cut_area_), of(fill_area_), pairs_};
-    }
-
-  private:
-    void above(double area, double a, double b, double c) {
-        cut_.add(area * ((a + b + c) / 3.0));
-        cut_area_.add(area);
-    }
-    void below(double area, double a, double b, double c) {
-        fill_.add(-area * ((a + b + c) / 3.0));
-        fill_area_.add(area);
-    }
-
-    /// Both signs: the corner a has a sign of its own, or b is zero.
-    ///
-    ///          a
-    ///         / \         the zero line goes from s, on a-b, to t, on a-c;
-    ///     s _/___\_ t     a-s-t has a's sign, s-b-c and s-c-t the other
-    ///      b ----- c
-    void add_bent(double area, std::array<double, 3> d) {
-        // Turned until a alone has its sign: of three signs, two of which differ, one does.
-        while (!(d[0] > 0.0 && d[1] <= 0.0 && d[2] <= 0.0) &&
-               !(d[0] < 0.0 && d[1] >= 0.0 && d[2] >= 0.0))
-            std::rotate(d.begin(), d.begin() + 1, d.end());
-        const double a = d[0], b = d[1], c = d[2];
-        const double to_s = a / (a - b), from_s = b / (b - a);
-        const double to_t = a / (a - c), from_t = c / (c - a);
-        const auto tip = [&](double part) {
-            return a > 0.0 ? above(part, a, 0.0, 0.0) : below(part, a, 0.0, 0.0);
-        };
-        const auto rest = [&](double part, double e, double f) {
-            if (part <= 0.0) return;
-            return a > 0.0 ? below(part, 0.0, e, f) : above(part, 0.0, e, f);
-        };
-        tip(area * to_s * to_t);
-        rest(area * from_s, b, c);
-        rest(area * to_s * from_t, c, 0.0);
-    }
-
-    NeumaierSum cut_, fill_, area_, cut_area_, fill_area_;
-    std::uint64_t pairs_ = 0;
-};
 
 /// A mesh's triangle, with its elevations above a base that is near both surfaces.
 struct Facet {
@@ -116,8 +54,11 @@ double area_of(const Triangle2& plan) {
     return compensated_doubled_area(plan[0], plan[1], plan[2]) / 2.0;
 }
 
+Volume volume_of(const CutAndFill& sums, std::uint64_t pairs) {
+    return {sums.cut(), sums.fill(), sums.area(), sums.cut_area(), sums.fill_area(), pairs};
+}
+
 void add_pair(const Facet& ours, const Facet& theirs, CutAndFill& sums) {
-    sums.count_pair();
     if (ours.plan == theirs.plan) {
         return sums.add(area_of(ours.plan), {ours.z[0] - theirs.z[0], ours.z[1] - theirs.z[1],
                                              ours.z[2] - theirs.z[2]});
@@ -153,17 +94,17 @@ Volume volume_against(const Tin& tin, std::span<const TriangleId> triangles, con
             d[i] = (v.z - plane.at.z) -
                    (plane.per_x * (v.x - plane.at.x) + plane.per_y * (v.y - plane.at.y));
         }
-        sums.count_pair();
         sums.add(area_of(plan_of(tin, t)), d);
     }
-    return sums.result();
+    return volume_of(sums, triangles.size());
 }
 
 Result<Volume> volume_between(const Tin& tin, std::span<const TriangleId> triangles,
                               const Tin& other, const std::function<bool()>& cancelled,
                               const std::function<void(double)>& progress) {
     CutAndFill sums;
-    if (triangles.empty()) return sums.result();
+    if (triangles.empty()) return volume_of(sums, 0);
+    std::uint64_t pairs = 0;
     Box reach = box_of(plan_of(tin, triangles.front()));
     for (const TriangleId t : triangles)
         reach.include(box_of(plan_of(tin, t)));
@@ -188,11 +129,12 @@ Result<Volume> volume_between(const Tin& tin, std::span<const TriangleId> triang
         const Facet ours = facet_of(tin, triangles[i], base);
         tree.near(box_of(plan), found);
         for (const std::uint32_t k : found) {
-            if (overlap(plan, plan_of(other, theirs[k])))
-                add_pair(ours, facet_of(other, theirs[k], base), sums);
+            if (!overlap(plan, plan_of(other, theirs[k]))) continue;
+            ++pairs;
+            add_pair(ours, facet_of(other, theirs[k], base), sums);
         }
     }
-    return sums.result();
+    return volume_of(sums, pairs);
 }
 
 }  // namespace tinsmith::core

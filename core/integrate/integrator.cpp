@@ -48,6 +48,7 @@ class Request {
         watch_.lap(report_.time_ms.integrate);
         if (improves_across())
             if (std::optional<Error> error = improve_across_facets()) return *error;
+        name_chains();
         return std::move(report_);
     }
 
@@ -55,6 +56,15 @@ class Request {
     Undo keep() { return std::exchange(done_, {}); }
 
   private:
+    /// Slots serve until the end; what is kept goes by name.
+    void name_chains() {
+        if (!tin_.is_renumbered()) return;
+        for (ShapeReport& report : report_.shapes)
+            for (Chain& chain : report.chains)
+                for (VertexId& v : chain.vertices)
+                    v = tin_.name(v);
+    }
+
     static MarchLimits limits_of(const IntegrateOptions& options) {
         return {options.max_crossings, options.max_new_triangles, &options.cancelled, nullptr};
     }

@@ -284,7 +284,7 @@ bool March::within_budget() {
 bool March::has_ids() {
     constexpr std::size_t kOfAStep = 16;
     if (tin_.triangle_count() + kOfAStep > options_.ids.triangles ||
-        tin_.vertex_count() + kOfAStep > options_.ids.vertices)
+        std::max(tin_.vertex_count(), tin_.name_count()) + kOfAStep > options_.ids.vertices)
         return fail(ErrorCode::IdBudget,
                     "the mesh has as many triangles or vertices as can be numbered; nothing was "
                     "changed; divide the terrain");

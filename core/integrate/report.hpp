@@ -17,7 +17,8 @@ struct OutsidePart {
 
 /// A stretch of an input path as it lies in the mesh: consecutive vertices are joined by
 /// constrained edges, as they were when the operation ended. Later operations may split those;
-/// `Tin::constraint_splits` says where. A closed path wholly on the mesh ends at its first vertex.
+/// `Tin::constraint_splits` says where. They are told by name (`Tin::name`), which stays true when
+/// a removal renumbers. A closed path wholly on the mesh ends at its first vertex.
 struct Chain {
     std::size_t path = 0;  ///< index into the shape's paths
     std::vector<VertexId> vertices;

@@ -315,15 +315,7 @@ void TinBuilder::index() {
     }
     tin_.bounds_ = box;
 
-    std::vector<Side> boundary;
-    for (std::uint32_t t = 0; t < tin_.triangles_.size(); ++t)
-        for (unsigned i = 0; i < 3; ++i)
-            if (!tin_.triangles_[t].twins[i].valid()) boundary.push_back({{t}, i});
-    tin_.boundary_ = BoundaryIndex(box.min.plan(), box.max.plan(), boundary.size());
-    for (const Side s : boundary) {
-        const VertexId v = tin_.origin(s);
-        tin_.boundary_.add(v, tin_.plan(v), tin_.plan(tin_.destination(s)));
-    }
+    tin_.boundary_ = tin_.index_boundary();
     tin_.components_ = find_components(tin_);
     tin_.built_vertex_count_ = tin_.vertices_.size();
     index_hints();
@@ -336,6 +328,7 @@ void TinBuilder::index_hints() {
     const std::size_t columns = static_cast<std::size_t>(std::clamp(std::sqrt(cells), 1.0, 8192.0));
     const Bounds& box = tin_.bounds_;
     tin_.hint_columns_ = columns;
+    tin_.hint_origin_ = box.min.plan();
     tin_.hints_per_x_ = static_cast<double>(columns) / (box.max.x - box.min.x);
     tin_.hints_per_y_ = static_cast<double>(columns) / (box.max.y - box.min.y);
     tin_.hints_.assign(columns * columns, {});

@@ -34,22 +34,6 @@ void set_side_marks(std::uint32_t& marks, unsigned side, std::uint32_t moved) {
 
 }  // namespace
 
-/// Keeps a copy of the triangle as it was, if it is an old one that was not changed before.
-inline Tin::Triangle& Surgery::edit(TriangleId t) {
-    Tin::Triangle& triangle = tin_.triangles_[t.index()];
-    if ((triangle.marks & kLoggedBit) == 0) {  // new ones have it from the start
-        record_.triangles.emplace_back(t, triangle);
-        triangle.marks |= kLoggedBit;
-    }
-    return triangle;
-}
-
-Tin::Vertex& Surgery::edit(VertexId v) {
-    Tin::Vertex& vertex = tin_.vertices_[v.index()];
-    if (v.index() < record_.vertex_count) record_.vertices.emplace_back(v, vertex);
-    return vertex;
-}
-
 /// Makes `to` the twin of `s`, which may be invalid.
 inline void Surgery::link(Side s, Side to) {
     if (s.valid()) edit(s.triangle()).twins[s.index()] = to;
@@ -62,6 +46,7 @@ inline VertexId Surgery::append(const Point3& p, TriangleId t) {
     vertex.y = p.y;
     vertex.z = p.z;
     vertex.triangle = t;
+    if (!tin_.names_.empty()) tin_.names_.push_back({tin_.next_name_++});
     return id;
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
 #include "core/mesh/tin.hpp"
 #include "core/mesh/undo_record.hpp"
 
@@ -56,6 +60,18 @@ class Surgery {
     /// Moves a vertex up or down. The facets around it are the caller's to renew.
     void set_elevation(VertexId v, double z);
 
+    /// Takes triangles out, and vertices that no triangle is left of. Where a vertex is left
+    /// between two fans or more, each further one gets a copy of it, appended, of the same name.
+    /// Then the last slot goes into each gap, from the lowest on. Cost: linear in the mesh, with
+    /// little for each triangle that stays; what is kept to take it back: what goes, and the
+    /// boundary. Requires: nothing else was changed by this surgery; each triangle is named once,
+    /// in order of slot; one is left at least.
+    struct Removed {
+        std::size_t vertices = 0;  ///< that are gone
+        std::size_t copies = 0;    ///< that came
+    };
+    Removed remove(std::span<const TriangleId> triangles);
+
     /// Notes that vertices of a facet may be this far off its plane.
     void raise_facet_error(double error);
 
@@ -81,6 +97,7 @@ class Surgery {
         1U | (1U << 4) | (1U << kFreshShift) | (1U << kInsideShift);
 
   private:
+    friend class Removal;
     Tin::Triangle& edit(TriangleId t);
     Tin::Vertex& edit(VertexId v);
     void link(Side s, Side to);
@@ -95,5 +112,21 @@ class Surgery {
     bool bounds_are_stale_ = false;  ///< a vertex that was highest or lowest has moved
     bool open_ = true;
 };
+
+/// Keeps a copy of the triangle as it was, if it is an old one that was not changed before.
+inline Tin::Triangle& Surgery::edit(TriangleId t) {
+    Tin::Triangle& triangle = tin_.triangles_[t.index()];
+    if ((triangle.marks & kLoggedBit) == 0) {  // new ones have it from the start
+        record_.triangles.emplace_back(t, triangle);
+        triangle.marks |= kLoggedBit;
+    }
+    return triangle;
+}
+
+inline Tin::Vertex& Surgery::edit(VertexId v) {
+    Tin::Vertex& vertex = tin_.vertices_[v.index()];
+    if (v.index() < record_.vertex_count) record_.vertices.emplace_back(v, vertex);
+    return vertex;
+}
 
 }  // namespace tinsmith::core

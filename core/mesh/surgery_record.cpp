@@ -13,6 +13,7 @@ Surgery::Surgery(Tin& tin) : tin_(tin) {
     record_.boundary_changes = tin.boundary_.changes();
     record_.split_count = tin.constraint_splits_.size();
     record_.next_facet = tin.next_facet_;
+    record_.next_name = tin.next_name_;
     record_.facet_error = tin.facet_error_;
     record_.bounds = tin.bounds_;
 }
@@ -34,7 +35,8 @@ UndoRecord Surgery::commit() {
         tin_.bounds_.max.z = high->z;
     }
     for (const auto& [id, old] : record_.triangles)
-        tin_.triangles_[id.index()].marks &= ~kTransientBits;
+        if (id.index() < tin_.triangles_.size())
+            tin_.triangles_[id.index()].marks &= ~kTransientBits;
     for (std::size_t i = record_.triangle_count; i < tin_.triangles_.size(); ++i)
         tin_.triangles_[i].marks &= ~kTransientBits;
     open_ = false;
@@ -47,7 +49,19 @@ void Surgery::roll_back() {
 }
 
 void Surgery::undo(Tin& tin, const UndoRecord& record) {
-    tin.boundary_.take_back(record.boundary_changes);
+    // What may fail for want of memory comes before what is changed.
+    const RemovalRecord* const removal = record.removal.get();
+    BoundaryIndex boundary;
+    std::vector<TriangleId> components;
+    if (removal != nullptr) {
+        tin.vertices_.reserve(record.vertex_count);
+        tin.triangles_.reserve(record.triangle_count);
+        tin.names_.reserve(record.vertex_count);
+        tin.constraint_splits_.reserve(record.split_count);
+        boundary = removal->boundary;
+        components = removal->components;
+    }
+    if (removal == nullptr) tin.boundary_.take_back(record.boundary_changes);
     tin.vertices_.resize(record.vertex_count);
     tin.triangles_.resize(record.triangle_count);
     for (const auto& [id, old] : record.triangles)
@@ -58,6 +72,22 @@ void Surgery::undo(Tin& tin, const UndoRecord& record) {
     tin.next_facet_ = record.next_facet;
     tin.facet_error_ = record.facet_error;
     tin.bounds_ = record.bounds;
+    if (!tin.names_.empty()) tin.names_.resize(record.vertex_count);
+    tin.next_name_ = record.next_name;
+    if (removal == nullptr) return;
+
+    if (!removal->was_renumbered) tin.names_.clear();
+    for (const auto& [slot, name] : removal->names)
+        tin.names_[slot.index()] = name;
+    std::copy(removal->splits.begin(), removal->splits.end(),
+              tin.constraint_splits_.begin() + static_cast<std::ptrdiff_t>(removal->named_splits));
+    tin.named_splits_ = removal->named_splits;
+    tin.gone_ends_.resize(removal->gone_ends);
+    tin.built_vertex_count_ = removal->built_vertex_count;
+    for (const auto& [cell, hint] : removal->hints)
+        tin.hints_[cell] = hint;
+    tin.boundary_ = std::move(boundary);
+    tin.components_ = std::move(components);
 }
 
 }  // namespace tinsmith::core

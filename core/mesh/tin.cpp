@@ -2,11 +2,16 @@
 #include "core/mesh/tin.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tinsmith::core {
 
 Tin::Tin(const Tin& other)
     : constraint_splits_(other.constraint_splits_),
+      named_splits_(other.named_splits_),
+      names_(other.names_),
+      next_name_(other.next_name_),
+      gone_ends_(other.gone_ends_),
       next_facet_(other.next_facet_),
       facet_error_(other.facet_error_),
       built_vertex_count_(other.built_vertex_count_),
@@ -14,6 +19,7 @@ Tin::Tin(const Tin& other)
       boundary_(other.boundary_),
       components_(other.components_),
       hints_(other.hints_),
+      hint_origin_(other.hint_origin_),
       hint_columns_(other.hint_columns_),
       hints_per_x_(other.hints_per_x_),
       hints_per_y_(other.hints_per_y_) {
@@ -30,6 +36,17 @@ Tin& Tin::operator=(const Tin& other) {
 void Tin::reserve_growth(std::size_t vertices, std::size_t triangles) {
     vertices_.reserve(vertices + vertices / 2);
     triangles_.reserve(triangles + triangles / 2);
+}
+
+BoundaryIndex Tin::index_boundary() const {
+    std::vector<Side> boundary;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+        for (unsigned i = 0; i < 3; ++i)
+            if (!triangles_[t].twins[i].valid()) boundary.push_back({{t}, i});
+    BoundaryIndex index(bounds_.min.plan(), bounds_.max.plan(), boundary.size());
+    for (const Side s : boundary)
+        index.add(origin(s), plan(origin(s)), plan(destination(s)));
+    return index;
 }
 
 MeshData Tin::to_data() const {
@@ -57,7 +74,8 @@ MeshData Tin::to_data() const {
 std::size_t Tin::memory_bytes() const {
     return vertices_.size() * sizeof(Vertex) + triangles_.size() * sizeof(Triangle) +
            hints_.size() * sizeof(TriangleId) +
-           constraint_splits_.size() * sizeof(ConstraintSplit) + boundary_.memory_bytes();
+           constraint_splits_.size() * sizeof(ConstraintSplit) + names_.size() * sizeof(VertexId) +
+           gone_ends_.size() * sizeof(GoneEnd) + boundary_.memory_bytes();
 }
 
 }  // namespace tinsmith::core

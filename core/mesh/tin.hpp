@@ -27,6 +27,12 @@ struct ConstraintSplit {
     VertexId p;
 };
 
+/// A vertex at which a constrained edge ended that was removed.
+struct GoneEnd {
+    VertexId name;
+    Point2 plan;
+};
+
 /// A 2.5D triangulation: one elevation for each plan position of its domain, which may be
 /// concave, have holes, and consist of several components.
 ///
@@ -46,7 +52,9 @@ struct ConstraintSplit {
 ///         v0 ------ v1
 ///            side 0
 ///
-/// Slots are stable: an operation appends and rewrites, it never renumbers.
+/// Slots are stable but for removals: everything else appends and rewrites. A removal moves the
+/// last slot into each gap; so that lines can be followed beyond it, vertices have names, too (see
+/// `name`).
 /// Memory: 32 bytes a vertex and 32 bytes a triangle, about 48 bytes a triangle in all.
 /// Source: Stanchev & Paraskevov 2023, section 3.1, with indices for pointers and twins for
 /// neighbours.
@@ -124,17 +132,31 @@ class Tin {
     const Bounds& bounds() const { return bounds_; }
 
     const BoundaryIndex& boundary() const { return boundary_; }
-    /// One triangle of each component, in order of slot. No operation joins or parts components,
-    /// and none takes a triangle's slot to another, so they are what they were when it was built.
+    /// One triangle of each component, in order of slot. No operation but a removal parts
+    /// components or takes a triangle's slot to another, so they are found when the mesh is built
+    /// and after each removal.
     const std::vector<TriangleId>& components() const { return components_; }
     /// A triangle somewhere near the position, to start a walk at. Cost: O(1).
     TriangleId hint(Point2 p) const { return hints_[hint_cell(p)]; }
     /// Where `hint` is kept, for those who want to ask for it ahead of time.
     const TriangleId* hint_place(Point2 p) const { return &hints_[hint_cell(p)]; }
 
+    /// What the vertex is called in chains and, from the next removal on, in constraint splits: the
+    /// slot that it had while nothing was removed; later ones go on counting. A name stays with the
+    /// vertex, and is never given again; copies of a vertex that a removal made share its name.
+    VertexId name(VertexId v) const { return names_.empty() ? v : names_[v.index()]; }
+    /// Whether names may differ from slots: anything was ever removed.
+    bool is_renumbered() const { return !names_.empty(); }
+    /// How many names were given.
+    std::size_t name_count() const { return names_.empty() ? vertices_.size() : next_name_; }
+    /// Where the ends of constrained edges are, or were, that removals took away.
+    const std::vector<GoneEnd>& gone_ends() const { return gone_ends_; }
+
     /// All constrained edges that were split since the mesh was built, oldest first: what leads
-    /// from a chain as it was integrated to the edges that make it up now.
+    /// from a chain as it was integrated to the edges that make it up now. The first
+    /// `named_split_count()` are told by name, those since the last removal by slot.
     const std::vector<ConstraintSplit>& constraint_splits() const { return constraint_splits_; }
+    std::size_t named_split_count() const { return named_splits_; }
 
     /// Plain copies of vertices, triangles and constrained edges, in slot order. Cost: linear.
     MeshData to_data() const;
@@ -153,27 +175,35 @@ class Tin {
     /// Takes address space for half as many slots again; memory only where they are used.
     void reserve_growth(std::size_t vertices, std::size_t triangles);
 
+    BoundaryIndex index_boundary() const;
+
     std::size_t hint_cell(Point2 p) const {
         const auto cell = [last = static_cast<double>(hint_columns_ - 1)](double place) {
             return static_cast<std::size_t>(place > 0.0 ? std::min(last, place) : 0.0);
         };
-        return cell((p.y - bounds_.min.y) * hints_per_y_) * hint_columns_ +
-               cell((p.x - bounds_.min.x) * hints_per_x_);
+        return cell((p.y - hint_origin_.y) * hints_per_y_) * hint_columns_ +
+               cell((p.x - hint_origin_.x) * hints_per_x_);
     }
 
     friend class TinBuilder;
     friend class Surgery;
+    friend class Removal;
 
     std::vector<Vertex, LineAllocator<Vertex>> vertices_;
     std::vector<Triangle, LineAllocator<Triangle>> triangles_;
     std::vector<ConstraintSplit> constraint_splits_;
+    std::size_t named_splits_ = 0;
+    std::vector<VertexId> names_;  ///< of each slot; empty: the slots themselves
+    std::uint32_t next_name_ = 0;  ///< where there are names
+    std::vector<GoneEnd> gone_ends_;
     std::uint32_t next_facet_ = 0;
     double facet_error_ = 0.0;
     std::size_t built_vertex_count_ = 0;
     Bounds bounds_;
     BoundaryIndex boundary_;
     std::vector<TriangleId> components_;
-    std::vector<TriangleId> hints_;  ///< square grid over the bounds, row by row
+    std::vector<TriangleId> hints_;  ///< square grid over the bounds as built, row by row
+    Point2 hint_origin_;
     std::size_t hint_columns_ = 0;
     double hints_per_x_ = 0.0;
     double hints_per_y_ = 0.0;

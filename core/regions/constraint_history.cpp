@@ -9,14 +9,48 @@
 
 namespace tinsmith::core {
 
-ConstraintHistory::ConstraintHistory(const Tin& tin) : tin_(tin) {
+ConstraintHistory::ConstraintHistory(const Tin& tin) : tin_(tin), gone_ends_(tin.gone_ends()) {
     const std::vector<ConstraintSplit>& splits = tin.constraint_splits();
     splits_.reserve(splits.size());
-    for (std::size_t i = 0; i < splits.size(); ++i)
-        splits_.push_back({edge_key(splits[i].a, splits[i].b), i, splits[i].p});
+    for (std::size_t i = 0; i < splits.size(); ++i) {
+        const auto [a, b, p] = splits[i];
+        if (i < tin.named_split_count())
+            splits_.push_back({edge_key(a, b), i, p});
+        else
+            splits_.push_back({edge_key(tin.name(a), tin.name(b)), i, tin.name(p)});
+    }
     std::sort(splits_.begin(), splits_.end(), [](const Split& l, const Split& r) {
         return std::tie(l.edge, l.index) < std::tie(r.edge, r.index);
     });
+    if (!tin.is_renumbered()) return;
+    slots_.reserve(tin.vertex_count());
+    for (std::uint32_t v = 0; v < tin.vertex_count(); ++v)
+        slots_.emplace_back(tin.name({v}), VertexId{v});
+    std::sort(slots_.begin(), slots_.end());
+    std::ranges::sort(gone_ends_, {}, &GoneEnd::name);
+}
+
+std::optional<Point2> ConstraintHistory::plan_of(VertexId name) const {
+    std::optional<Point2> plan;
+    for_each_slot(name, [&](VertexId slot) { plan = tin_.plan(slot); });
+    if (plan) return plan;
+    const auto gone = std::ranges::lower_bound(gone_ends_, name, {}, &GoneEnd::name);
+    if (gone != gone_ends_.end() && gone->name == name) plan = gone->plan;
+    return plan;
+}
+
+/// Where two vertices were parted, one pair at most of their slots is joined: an edge that stays
+/// stays one.
+ConstraintHistory::Edge ConstraintHistory::edge_between(VertexId a, VertexId b) const {
+    Edge found;
+    for_each_slot(a, [&](VertexId v) {
+        for_each_slot(b, [&](VertexId w) {
+            if (found.side.valid()) return;
+            found.side = find_edge(tin_, v, w);
+            found.origin_is_first = found.side.valid() && tin_.origin(found.side) == v;
+        });
+    });
+    return found;
 }
 
 std::span<const ConstraintHistory::Split> ConstraintHistory::splits_of(VertexId a,
@@ -31,7 +65,7 @@ std::span<const ConstraintHistory::Split> ConstraintHistory::splits_of(VertexId 
 }
 
 bool ConstraintHistory::is_constrained(VertexId a, VertexId b) const {
-    const Side edge = find_edge(tin_, a, b);
+    const Side edge = edge_between(a, b).side;
     return edge.valid() && tin_.is_constrained(edge);
 }
 
@@ -67,6 +101,32 @@ std::vector<VertexId> ConstraintHistory::expand(std::span<const VertexId> chain)
     return expanded;
 }
 
+std::vector<std::vector<VertexId>> ConstraintHistory::lines_along(
+    std::span<const VertexId> chain) const {
+    std::vector<std::vector<VertexId>> lines;
+    const std::vector<VertexId> names = expand(chain);
+    if (names.size() == 1) {
+        for_each_slot(names.front(), [&lines](VertexId slot) {
+            if (lines.empty()) lines.push_back({slot});
+        });
+        return lines;
+    }
+    bool goes_on = false;
+    for (std::size_t i = 1; i < names.size(); ++i) {
+        const auto [side, origin_is_first] = edge_between(names[i - 1], names[i]);
+        if (!side.valid()) {
+            goes_on = false;
+            continue;
+        }
+        const VertexId from = origin_is_first ? tin_.origin(side) : tin_.destination(side);
+        const VertexId to = origin_is_first ? tin_.destination(side) : tin_.origin(side);
+        if (!goes_on || lines.back().back() != from) lines.push_back({from});
+        lines.back().push_back(to);
+        goes_on = true;
+    }
+    return lines;
+}
+
 std::vector<std::pair<VertexId, VertexId>> ConstraintHistory::edges_along(
     std::span<const VertexId> chain) const {
     std::vector<std::pair<VertexId, VertexId>> edges;
@@ -82,7 +142,11 @@ std::vector<std::pair<VertexId, VertexId>> ConstraintHistory::edges_along(
         while (!parts.empty()) {
             const auto [a, b, since] = parts.back();
             parts.pop_back();
-            if (is_constrained(a, b)) edges.emplace_back(a, b);
+            const auto [edge, origin_is_first] = edge_between(a, b);
+            if (edge.valid() && tin_.is_constrained(edge)) {
+                const VertexId v = tin_.origin(edge), w = tin_.destination(edge);
+                edges.push_back(origin_is_first ? std::pair{v, w} : std::pair{w, v});
+            }
             for (const Split& split : splits_of(a, b)) {
                 if (split.index < since || !followed.insert(split.index).second) continue;
                 parts.push_back({a, split.p, split.index + 1});

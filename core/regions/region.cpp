@@ -31,7 +31,7 @@ class RegionSearch {
           place_in_belt_(tin.triangle_count()),
           seen_(tin.triangle_count()) {
         collect_lines(history, outline);
-        close_joints();
+        close_joints(history);
         settle_jumps();
     }
 
@@ -63,10 +63,14 @@ class RegionSearch {
         for (const Chain& chain : outline.chains) {
             if (!outline.shape.paths[chain.path].closed) continue;
             const std::vector<VertexId> line = history.expand(chain.vertices);
-            vertices_.insert(vertices_.end(), line.begin(), line.end());
+            for (const VertexId name : line)
+                history.for_each_slot(name, [this](VertexId v) { vertices_.push_back(v); });
             for (std::size_t i = 1; i < line.size(); ++i) {
-                add_jump(line[i - 1], line[i], 1);
-                segments_.push_back({tin_.plan(line[i - 1]), tin_.plan(line[i])});
+                const auto [side, origin_is_first] = history.edge_between(line[i - 1], line[i]);
+                add_jump(side, origin_is_first ? 1 : -1);
+                // What was removed still parts the inside from the outside.
+                const auto from = history.plan_of(line[i - 1]), to = history.plan_of(line[i]);
+                if (from && to) segments_.push_back({*from, *to});
             }
             if (line.empty()) continue;
             joints_.emplace_back(line.front(), -1);
@@ -81,11 +85,9 @@ class RegionSearch {
         vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
     }
 
-    /// The winding number is higher by `times` on the left of a -> b than on its right.
-    void add_jump(VertexId a, VertexId b, int times) {
-        Side side = find_edge(tin_, a, b);
+    /// The winding number is higher by `times` on the left of the side than on its right.
+    void add_jump(Side side, int times) {
         if (!side.valid()) return;
-        if (tin_.origin(side) != a) times = -times;
         jumps_.emplace_back(side, times);
         if (const Side twin = tin_.twin(side); twin.valid()) jumps_.emplace_back(twin, -times);
     }
@@ -93,21 +95,24 @@ class RegionSearch {
     /// A path that left the mesh within rounding of the boundary did so from a vertex that is not
     /// on it: the last step, which no edge takes, goes to the nearer end of the nearest boundary
     /// edge there. So it leaves most of the needle between them on the right side.
-    void close_joints() {
+    void close_joints(const ConstraintHistory& history) {
         std::sort(joints_.begin(), joints_.end());
         for (std::size_t i = 0; i < joints_.size();) {
-            const VertexId v = joints_[i].first;
+            const VertexId name = joints_[i].first;
             int ends = 0;
-            for (; i < joints_.size() && joints_[i].first == v; ++i)
+            for (; i < joints_.size() && joints_[i].first == name; ++i)
                 ends += joints_[i].second;
-            if (ends == 0 || boundary_side_from(tin_, v).valid()) continue;
-            if (const VertexId outlet = outlet_at(v); outlet.valid()) add_jump(v, outlet, ends);
+            if (ends == 0) continue;
+            history.for_each_slot(name, [&](VertexId v) {
+                if (!boundary_side_from(tin_, v).valid()) add_jump(outlet_at(v), ends);
+            });
         }
     }
 
-    VertexId outlet_at(VertexId v) const {
+    /// The side from v to there; invalid where nothing is near.
+    Side outlet_at(VertexId v) const {
         const Point2 p = tin_.plan(v);
-        VertexId outlet;
+        Side outlet;
         double least = HUGE_VAL;
         for_each_side_at(tin_, v, [&](Side s) {
             while (tin_.origin(s) != v)
@@ -118,7 +123,9 @@ class RegionSearch {
             const double distance = distance_to_segment(p, at_a, at_b);
             if (!(distance < least)) return;
             least = distance;
-            outlet = distance_between(p, at_a) <= distance_between(p, at_b) ? a : b;
+            // To b it is the triangle across that starts at v.
+            const bool is_a = distance_between(p, at_a) <= distance_between(p, at_b);
+            outlet = is_a ? s : tin_.twin(s.previous());
         });
         return outlet;
     }
@@ -182,8 +189,8 @@ class RegionSearch {
     }
 
     /// What the group's windings lack, from an exact winding number in its largest triangle that
-    /// holds its centroid's double. In one that is some ulps wide none may; a mesh of nothing else
-    /// counts as outside.
+    /// holds its centroid's double. In one that is some ulps wide none may; then from a vertex that
+    /// is on no chain, or at last from the middle of the longest edge along none.
     int unknown_of(const std::vector<std::size_t>& group, const WindingNumber& number) const {
         double largest = 0.0;
         std::optional<std::size_t> best;
@@ -201,7 +208,31 @@ class RegionSearch {
             best = i;
             inner = centre;
         }
-        return best ? number.around(inner) - belt_winding_[*best] : 0;
+        if (best) return number.around(inner) - belt_winding_[*best];
+        for (const std::size_t i : group)
+            for (const VertexId v : tin_.triangle(belt_[i]).vertices)
+                if (!std::binary_search(vertices_.begin(), vertices_.end(), v))
+                    return number.around(tin_.plan(v)) - belt_winding_[i];
+        return number_at_an_edge(group, number);
+    }
+
+    int number_at_an_edge(const std::vector<std::size_t>& group,
+                          const WindingNumber& number) const {
+        double longest = 0.0;
+        int found = 0;
+        for (const std::size_t i : group) {
+            for (unsigned k = 0; k < 3; ++k) {
+                const Side side(belt_[i], k);
+                const Point2 a = tin_.plan(tin_.origin(side));
+                const Point2 b = tin_.plan(tin_.destination(side));
+                const double length = distance_between(a, b);
+                if (!(length > longest) || jump(side) != 0) continue;
+                longest = length;
+                found = number.around({a.x + (b.x - a.x) / 2.0, a.y + (b.y - a.y) / 2.0}) -
+                        belt_winding_[i];
+            }
+        }
+        return found;
     }
 
     /// Adds the triangle and all that are reached from it without meeting one that was seen.

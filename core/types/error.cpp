@@ -43,6 +43,10 @@ std::string_view code_name(ErrorCode code) {
             return "NOT_REPRESENTABLE";
         case ErrorCode::NoEdgeAlong:
             return "NO_EDGE_ALONG";
+        case ErrorCode::NothingInside:
+            return "NOTHING_INSIDE";
+        case ErrorCode::NothingLeft:
+            return "NOTHING_LEFT";
         case ErrorCode::CrossingBudget:
             return "CROSSING_BUDGET";
         case ErrorCode::TriangleBudget:

@@ -36,6 +36,8 @@ enum class ErrorCode {
     LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that
     NotRepresentable = 403,  ///< no mesh of doubles holds the segment within the promised distance
     NoEdgeAlong = 404,       ///< no edge of the mesh lies along the line
+    NothingInside = 405,     ///< nothing of the polygon's inside lies on the mesh
+    NothingLeft = 406,       ///< a removal would leave no triangle
     // 500: budgets
     CrossingBudget = 501,  ///< more crossings than allowed
     TriangleBudget = 502,  ///< more new triangles than allowed

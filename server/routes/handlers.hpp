@@ -17,6 +17,11 @@ Response get_welcome(Services&, const Request&, const PathArguments&);
 Response get_health(Services&, const Request&, const PathArguments&);  ///< takes no lock
 Response get_limits(Services&, const Request&, const PathArguments&);
 
+// description_routes.cpp: the interface described, for programs and for people
+Response get_description(Services&, const Request&, const PathArguments&);
+Response get_docs(Services&, const Request&, const PathArguments&);
+Response get_docs_file(Services&, const Request&, const PathArguments&);
+
 // session_routes.cpp
 Response list_sessions(Services&, const Request&, const PathArguments&);
 Response create_session(Services&, const Request&, const PathArguments&);
@@ -29,6 +34,9 @@ Response fork_session(Services&, const Request&, const PathArguments&);
 Response integrate_polygons(Services&, const Request&, const PathArguments&);
 Response list_polygons(Services&, const Request&, const PathArguments&);
 Response get_polygon(Services&, const Request&, const PathArguments&);
+
+// edit_routes.cpp
+Response edit_polygon(Services&, const Request&, const PathArguments&);
 
 // history_routes.cpp
 Response delete_polygon(Services&, const Request&, const PathArguments&);

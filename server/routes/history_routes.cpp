@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "api/edit_answer.hpp"
 #include "api/formats/locks_json.hpp"
 #include "api/history.hpp"
 #include "api/responses.hpp"
@@ -106,6 +107,9 @@ Response send_change(const Request& request, Services& services, const Asked& as
 
 /// A request's own report again; of another change what is told of it.
 std::string text_of(const Session& session, const ChangeCopy& change) {
+    if (change.answer) {
+        return api::write_edit(session.facts().id, change.view.version, false, *change.answer);
+    }
     if (change.locks) {
         return api::write_locks({session.facts().id, change.view.version, false,
                                  change.locks->locked, change.locks->paths});
@@ -113,16 +117,6 @@ std::string text_of(const Session& session, const ChangeCopy& change) {
     if (!change.report) return api::write_change(session.facts().id, change.view);
     return api::write_report(
         {session.facts().id, change.view.version, false, change.view.polygons, *change.report});
-}
-
-Step<bool> require_cascade(const Request& request) {
-    const auto cascade = request.parameter("cascade");
-    if (!cascade || *cascade == "false") return false;
-    if (*cascade == "true") return true;
-    std::string detail = "cascade is true or false.";
-    return refuse(request, {api::ProblemType::InvalidParameter,
-                            detail,
-                            {{"INVALID_VALUE", detail, {}, {}, {}, "cascade"}}});
 }
 
 }  // namespace
@@ -147,7 +141,7 @@ Response delete_polygon(Services& services, const Request& request,
                         const PathArguments& arguments) {
     const auto asked = require_change(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
-    const auto cascade = require_cascade(request);
+    const auto cascade = require_flag(request, "cascade");
     if (const auto* refusal = std::get_if<Response>(&cascade)) return *refusal;
     const Asked& what = std::get<0>(asked);
     const auto outcome =

@@ -5,35 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "server/hex.hpp"
 #include "server/random_id.hpp"
 #include "server/reply.hpp"
 
 namespace tinsmith::server {
 
 namespace {
-
-constexpr std::string_view kDigits = "0123456789abcdef";
-
-std::string hex(std::string_view text) {
-    std::string out;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        out.push_back(kDigits[byte >> 4]);
-        out.push_back(kDigits[byte & 15U]);
-    }
-    return out;
-}
-
-std::optional<std::string> from_hex(std::string_view text) {
-    std::string out;
-    for (; text.size() >= 2; text.remove_prefix(2)) {
-        const std::size_t high = kDigits.find(text[0]);
-        const std::size_t low = kDigits.find(text[1]);
-        if (high == kDigits.npos || low == kDigits.npos) return std::nullopt;
-        out.push_back(static_cast<char>(high * 16 + low));
-    }
-    return text.empty() ? std::optional(std::move(out)) : std::nullopt;
-}
 
 std::optional<std::size_t> limit_in(std::string_view text) {
     std::size_t limit = 0;
@@ -81,7 +59,7 @@ Step<Page> require_page(const Request& request, std::string_view kind) {
 std::string next_link(const Request& request, std::string_view kind, std::size_t limit,
                       std::string_view last) {
     return "<" + request.path + "?limit=" + std::to_string(limit) +
-           "&cursor=" + hex(std::string(kind) + ":" + std::string(last)) + ">; rel=\"next\"";
+           "&cursor=" + hex_of(std::string(kind) + ":" + std::string(last)) + ">; rel=\"next\"";
 }
 
 }  // namespace tinsmith::server

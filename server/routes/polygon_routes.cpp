@@ -33,20 +33,6 @@ Response send_report(const Session& session, const PolygonResult& result, bool d
                                         result.polygon_ids, *result.report}));
 }
 
-/// The edit is made even where its mesh cannot be sent, and the answer has to say so.
-Response send_mesh_after(const Request& request, const Session& session,
-                         const PolygonResult& result, bool dry_run) {
-    const std::string made =
-        " The edit was made: the session has version " + std::to_string(result.version) + ".";
-    if (!result.mesh) {
-        return refuse(request, api::ProblemType::OutOfMemory,
-                      "There is no memory to send the mesh now: get it later." + made);
-    }
-    api::GltfOptions options;
-    options.unit_to_metre = api::metres_per(session.facts().unit);
-    return glb_response(request, *result.mesh, options, dry_run ? std::string() : made);
-}
-
 /// GeoJSON and JSON differ in their type alone, and so have tags of their own.
 std::string_view suffix_of(std::size_t type) {
     return type == 0 ? "-geojson" : "-json";
@@ -99,9 +85,7 @@ Response integrate_polygons(Services& services, const Request& request,
     set_budgets(work->edit, services.limits, services.stopping);
     const bool dry_run = work->edit.dry_run;
     if (dry_run && as_delta) {
-        return refuse(request, api::ProblemType::InvalidParameter,
-                      "A dry run makes no version that a delta could lead to: leave dry_run out, "
-                      "or ask for application/json or model/gltf-binary.");
+        return refuse_delta_of_dry_run(request);
     }
     const auto memory = require_memory(services, request, dry_run ? session.mesh_bytes() : 0);
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
@@ -121,7 +105,7 @@ Response integrate_polygons(Services& services, const Request& request,
     }
     begin_stage(1.0);
     const auto& result = std::get<PolygonResult>(outcome);
-    Response response = as_glb     ? send_mesh_after(request, session, result, dry_run)
+    Response response = as_glb ? mesh_after(request, session, result.version, result.mesh, dry_run)
                         : as_delta ? delta_response(request, session, result.version, result.delta)
                                    : send_report(session, result, dry_run);
     if (!dry_run) response.with("Link", history_link(session, result.version));

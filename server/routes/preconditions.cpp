@@ -108,10 +108,14 @@ std::optional<Response> answer_to_conditions(const Request& request, const Sessi
     if (const auto wanted = std::get<0>(expected); wanted && *wanted != version) {
         return version_mismatch(request, session, version);
     }
+    return answer_where_unmodified(request, etag_of(session, version, suffix));
+}
+
+std::optional<Response> answer_where_unmodified(const Request& request, const std::string& etag) {
     const auto asked = require_tags(request, "if-none-match");
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
     if (!std::get<0>(asked)) return std::nullopt;
-    const auto tag = matched(*std::get<0>(asked), etag_of(session, version, suffix), request);
+    const auto tag = matched(*std::get<0>(asked), etag, request);
     return tag ? std::optional(not_modified(*tag)) : std::nullopt;
 }
 

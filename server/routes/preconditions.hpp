@@ -37,4 +37,7 @@ Response version_mismatch(const Request& request, const Session& session, std::u
 std::optional<Response> answer_to_conditions(const Request& request, const Session& session,
                                              std::uint64_t version, std::string_view suffix);
 
+/// The same for what belongs to no session and has that tag: 304, 400, or nothing.
+std::optional<Response> answer_where_unmodified(const Request& request, const std::string& etag);
+
 }  // namespace tinsmith::server

@@ -97,22 +97,6 @@ Step<std::shared_ptr<Session>> require_other(Services& services, const Request& 
                            pointer}});
 }
 
-Response refuse_polygon(const Request& request, const std::string& id, PolygonFault fault) {
-    if (fault == PolygonFault::NotThere) {
-        std::string detail = "No polygon of this session has the id \"" + id.substr(0, 64) +
-                             "\". GET /v1/sessions/{id}/polygons lists them.";
-        return refuse(request, api::Problem{api::ProblemType::NoSuchPolygon,
-                                            detail,
-                                            {{"NO_SUCH_POLYGON", detail, "/polygon"}}});
-    }
-    return refuse_faults(request, api::FaultKind::Invalid,
-                         {{"NO_INSIDE",
-                           "\"" + id.substr(0, 64) +
-                               "\" is a line or a point and has no inside: "
-                               "name a polygon.",
-                           "/polygon"}});
-}
-
 }  // namespace
 
 Response get_elevation(Services& services, const Request& request, const PathArguments& arguments) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <utility>
 
+#include "api/crs.hpp"
 #include "api/media_type.hpp"
 #include "api/problem.hpp"
 #include "server/reply.hpp"
@@ -119,6 +120,51 @@ Response delta_response(const Request& request, const Session& session, std::uin
                       session.facts().id + "/mesh?since=" + std::to_string(version - 1) +
                       ". The edit was made: the session has version " + std::to_string(version) +
                       ".");
+}
+
+Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
+                    const std::optional<core::MeshData>& mesh, bool dry_run) {
+    const std::string made =
+        " The edit was made: the session has version " + std::to_string(version) + ".";
+    if (!mesh) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "There is no memory to send the mesh now: get it later." + made);
+    }
+    api::GltfOptions options;
+    options.unit_to_metre = api::metres_per(session.facts().unit);
+    return glb_response(request, *mesh, options, dry_run ? std::string() : made);
+}
+
+Response refuse_delta_of_dry_run(const Request& request) {
+    return refuse(request, api::ProblemType::InvalidParameter,
+                  "A dry run makes no version that a delta could lead to: leave dry_run out, or "
+                  "ask for application/json or model/gltf-binary.");
+}
+
+Step<bool> require_flag(const Request& request, const std::string& name) {
+    const auto flag = request.parameter(name);
+    if (!flag || *flag == "false") return false;
+    if (*flag == "true") return true;
+    std::string detail = name + " is true or false.";
+    return refuse(request, {api::ProblemType::InvalidParameter,
+                            detail,
+                            {{"INVALID_VALUE", detail, {}, {}, {}, name}}});
+}
+
+Response refuse_polygon(const Request& request, const std::string& id, PolygonFault fault) {
+    if (fault == PolygonFault::NotThere) {
+        std::string detail = "No polygon of this session has the id \"" + id.substr(0, 64) +
+                             "\". GET /v1/sessions/{id}/polygons lists them.";
+        return refuse(request, api::Problem{api::ProblemType::NoSuchPolygon,
+                                            detail,
+                                            {{"NO_SUCH_POLYGON", detail, "/polygon"}}});
+    }
+    return refuse(request, api::problem_of_faults(
+                               api::FaultKind::Invalid,
+                               {{"NO_INSIDE",
+                                 "\"" + id.substr(0, 64) +
+                                     "\" is a line or a point and has no inside: name a polygon.",
+                                 "/polygon"}}));
 }
 
 std::string history_link(const Session& session, std::uint64_t version) {

@@ -11,6 +11,7 @@
 #include "api/fault.hpp"
 #include "api/formats/gltf.hpp"
 #include "api/requests.hpp"
+#include "server/edit.hpp"
 #include "server/http_message.hpp"
 #include "server/routes/preconditions.hpp"
 #include "server/routes/step.hpp"
@@ -48,6 +49,20 @@ Response glb_response(const Request& request, const core::MeshData& mesh,
 /// What changed, or why it cannot be sent though the edit was made.
 Response delta_response(const Request& request, const Session& session, std::uint64_t version,
                         const std::optional<api::MeshDelta>& delta);
+
+/// The mesh after an edit as GLB. The edit is made even where its mesh cannot be sent, and the
+/// answer says so, unless it was a dry run.
+Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
+                    const std::optional<core::MeshData>& mesh, bool dry_run);
+
+/// 400: a dry run makes no version.
+Response refuse_delta_of_dry_run(const Request& request);
+
+/// A parameter that is true or false; false where it is not given.
+Step<bool> require_flag(const Request& request, const std::string& name);
+
+/// 404 or 422, for the polygon that the body's member "polygon" names.
+Response refuse_polygon(const Request& request, const std::string& id, PolygonFault fault);
 
 /// Where the report of a version stays, as a Link header has it.
 std::string history_link(const Session& session, std::uint64_t version);

@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
 constexpr std::array<std::string_view, 1> kVersion{"version"};
+constexpr std::array<std::string_view, 1> kEdit{"dry_run"};
 constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
@@ -66,6 +67,9 @@ std::vector<Route> make_routes(Services& services) {
     return {
         {"GET", "/", {}, to(get_welcome)},
         {"GET", "/healthz", {}, to(get_health)},
+        {"GET", "/openapi.json", {}, to(get_description)},
+        {"GET", "/docs", {}, to(get_docs)},
+        {"GET", "/docs/{file}", {}, to(get_docs_file)},
         {"GET", "/v1/limits", {}, json(get_limits)},
         {"POST", "/v1/integrate", {}, deferrable(services, to(integrate_once))},
         {"GET", "/v1/jobs", kPageParameters, json(list_jobs)},
@@ -87,6 +91,7 @@ std::vector<Route> make_routes(Services& services) {
         {"PUT", "/v1/sessions/{id}/locks", kLockParameters, change(put_locks)},
         {"DELETE", "/v1/sessions/{id}/locks", kLockParameters, change(delete_locks)},
         {"GET", "/v1/sessions/{id}/locks", kPageParameters, to(get_locks)},
+        {"POST", "/v1/sessions/{id}/edits", kEdit, change(edit_polygon)},
         {"POST", "/v1/sessions/{id}/undo", {}, change(undo_edit)},
         {"POST", "/v1/sessions/{id}/redo", {}, change(redo_edit)},
         {"GET", "/v1/sessions/{id}/history", kPageParameters, json(get_history)},

@@ -12,11 +12,14 @@
 
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
+#include "core/mesh/check.hpp"
+#include "core/mesh/surgery.hpp"
 #include "core/regions/coverage.hpp"
 #include "core/regions/region.hpp"
 #include "core/types/ulp.hpp"
 #include "tests/support/quad.hpp"
 #include "tests/support/random_input.hpp"
+#include "tests/support/same_tin.hpp"
 
 namespace tinsmith {
 namespace {
@@ -152,8 +155,37 @@ std::string check_region(const Tin& tin, const ConstraintHistory& history, const
     return {};
 }
 
+/// Takes out what is inside a shape, or outside it, or some triangles here and there.
+Undo remove_some(Random& random, Tin& tin, const std::vector<Kept>& kept) {
+    std::vector<TriangleId> gone;
+    const auto way = random() % 3;
+    if (way < 2 && !kept.empty()) {
+        const Kept& some = kept[random() % kept.size()];
+        gone = find_region(tin, ConstraintHistory(tin),
+                           {some.shape, some.report.chains, some.report.outside}, Winding::EvenOdd)
+                   .triangles;
+    }
+    if (way == 1 || gone.empty()) {
+        const std::uint64_t one_in = 2 + random() % 20;
+        std::vector<TriangleId> others;
+        for (std::uint32_t t = 0; t < tin.triangle_count(); ++t) {
+            const bool inside = std::binary_search(gone.begin(), gone.end(), TriangleId{t});
+            if (gone.empty() ? random() % one_in == 0 : !inside) others.push_back({t});
+        }
+        gone = std::move(others);
+    }
+    if (gone.size() == tin.triangle_count()) gone.pop_back();
+    Surgery surgery(tin);
+    surgery.remove(gone);
+    Undo undo;
+    undo.push_back(surgery.commit());
+    return undo;
+}
+
+enum class Removals { None, Some };
+
 /// A mesh, a few operations on it, the regions of all after each, and after taking the last back.
-std::string try_seed(std::uint64_t seed, Counts& counts) {
+std::string try_seed(std::uint64_t seed, Counts& counts, Removals removals = Removals::None) {
     Random random(seed);
     const auto kind = static_cast<MeshKind>(random() % test::kMeshKinds);
     const MeshData data = test::random_mesh(random, kind, 1 + static_cast<int>(random() % 7));
@@ -193,8 +225,18 @@ std::string try_seed(std::uint64_t seed, Counts& counts) {
         made.report = report->shapes[0];
         kept.push_back(std::move(made));
         if (std::string broken = check_all(""); !broken.empty()) return broken;
+        if (removals == Removals::None || random() % 2 == 0) continue;
+        const Tin before = tin;
+        const Undo undo = remove_some(random, tin, kept);
+        const auto violations = check_tin(tin);
+        if (!violations.empty()) return violations[0].law + ": " + violations[0].detail;
+        if (std::string broken = check_all(" after a removal"); !broken.empty()) return broken;
+        if (random() % 4 != 0) continue;
+        take_back(tin, undo);
+        if (!test::same_tin(tin, before)) return "another mesh after a removal was taken back";
+        (void)remove_some(random, tin, kept);
     }
-    if (kept.empty()) return {};
+    if (kept.empty() || removals == Removals::Some) return {};
     take_back(tin, kept.back().undo);
     kept.pop_back();
     return check_all(" after an undo");
@@ -218,6 +260,23 @@ TEST(RegionsProperty, EachTriangleIsInsideAsItsCentroidIs) {
     std::cout << counts.triangles << " triangles asked, " << counts.inside << " inside\n";
     if (only != nullptr) return;
     EXPECT_GT(counts.triangles, 100 * last);
+    EXPECT_GT(counts.inside, 10 * last);
+}
+
+TEST(RegionsProperty, TheSameAfterRemovals) {
+    const char* only = std::getenv("TINSMITH_SEED");
+    const std::uint64_t first = only != nullptr ? std::strtoull(only, nullptr, 10) : 1;
+    const std::uint64_t last = only != nullptr ? first : 1500;
+    Counts counts;
+    int failures = 0;
+    for (std::uint64_t seed = first; seed <= last && failures < 10; ++seed) {
+        const std::string broken = try_seed(seed, counts, Removals::Some);
+        if (broken.empty()) continue;
+        ++failures;
+        ADD_FAILURE() << "TINSMITH_SEED=" << seed << ": " << broken;
+    }
+    std::cout << counts.triangles << " triangles asked, " << counts.inside << " inside\n";
+    if (only != nullptr) return;
     EXPECT_GT(counts.inside, 10 * last);
 }
 

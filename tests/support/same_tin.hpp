@@ -25,7 +25,14 @@ inline bool same_tin(const core::Tin& a, const core::Tin& b) {
     for (std::size_t i = 0; i < l.size(); ++i) {
         if (l[i].a != r[i].a || l[i].b != r[i].b || l[i].p != r[i].p) return false;
     }
-    return a.next_facet() == b.next_facet() && a.facet_error() == b.facet_error() &&
+    if (a.is_renumbered() != b.is_renumbered() || a.components() != b.components()) return false;
+    for (std::uint32_t v = 0; v < a.vertex_count(); ++v) {
+        if (a.name({v}) != b.name({v})) return false;
+    }
+    return a.name_count() == b.name_count() && a.named_split_count() == b.named_split_count() &&
+           a.gone_ends().size() == b.gone_ends().size() &&
+           a.built_vertex_count() == b.built_vertex_count() &&
+           a.next_facet() == b.next_facet() && a.facet_error() == b.facet_error() &&
            std::memcmp(&a.bounds(), &b.bounds(), sizeof a.bounds()) == 0;
 }
 

@@ -11,6 +11,7 @@
 #include "server/router.hpp"
 #include "server/routes/route_table.hpp"
 #include "server/target.hpp"
+#include "tests/unit/server/description.hpp"
 
 namespace tinsmith::server {
 
@@ -45,6 +46,8 @@ class Handlers : public testing::Test {
         request.trace = parse_traceparent(request.header("traceparent").value_or(""));
         Response response = router.handle(request);
         finish_answer(services.policy, request, response);
+        EXPECT_EQ(Description::get().complaint(request, response), "")
+            << method << " " << target << " is answered as /openapi.json does not say";
         return response;
     }
 

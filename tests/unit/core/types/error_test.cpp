@@ -24,6 +24,7 @@ constexpr ErrorCode kCodes[] = {
     ErrorCode::CrossingBudget,      ErrorCode::TriangleBudget,
     ErrorCode::Cancelled,           ErrorCode::StepBudget,
     ErrorCode::NoEdgeAlong,         ErrorCode::IdBudget,
+    ErrorCode::NothingInside,       ErrorCode::NothingLeft,
 };
 
 TEST(ErrorCode, EachHasAWordOfItsOwn) {

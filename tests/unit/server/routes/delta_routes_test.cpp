@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "api/formats/delta.hpp"
@@ -59,9 +60,43 @@ class DeltaRoutes : public Handlers {
         return body.dump();
     }
 
+    /// An edit of one of the polygons; of each kind, removals and trims not too often, which leave
+    /// little to go on with.
+    static std::string random_edit(test::Random& random, const json& features) {
+        json body{{"polygon", features[random() % features.size()]["tinsmith"]["id"]}};
+        const double width = test::uniform(random, 0.01, 0.5);
+        switch (test::pick(random, 10)) {
+            case 0:
+                body["operation"] = "remove";
+                break;
+            case 1:
+                body["operation"] = "keep";
+                break;
+            case 2:
+            case 3:
+                body.update({{"operation", "smooth"}, {"passes", 1 + test::pick(random, 5)}});
+                break;
+            case 4:
+            case 5:
+                body.update({{"operation", "offset"},
+                             {"by", test::uniform(random, -1, 1)},
+                             {"rim", width}});
+                break;
+            case 6:
+                body.update({{"operation", "offset"}, {"by", 1}, {"taper", width}});
+                break;
+            default:
+                body.update({{"operation", "set"}, {"elevation", test::uniform(random, -3, 3)}});
+                if (test::pick(random, 2) == 0) body["border"] = "new";
+        }
+        return body.dump();
+    }
+
     /// Some change or other, answered as a delta; perhaps refused.
     Response change(test::Random& random) {
-        switch (test::pick(random, 12)) {
+        const json list = json::parse(ask("GET", session + "/polygons", {kAsJson}).body);
+        const json& features = list["features"];
+        switch (test::pick(random, 16)) {
             case 0:
             case 1:
             case 2:
@@ -72,29 +107,35 @@ class DeltaRoutes : public Handlers {
                 return ask("POST", session + "/redo", {kAsDelta});
             case 6:
             case 7: {
-                const json list = json::parse(ask("GET", session + "/polygons", {kAsJson}).body);
-                const json& features = list["features"];
                 if (features.empty()) return {};
                 const auto& some = features[random() % features.size()];
                 return ask("DELETE",
-                           session + "/polygons/" + some["tinsmith"]["id"].get<std::string>(),
+                           session + "/polygons/" + some["tinsmith"]["id"].get<std::string>() +
+                               "?cascade=true",
                            {kAsDelta});
             }
+            case 8:
+            case 9:
+            case 10:
+            case 11:
+            case 12:
+                if (features.empty()) return {};
+                return post(session + "/edits", random_edit(random, features), {kAsDelta});
             default:
                 return post(session + "/polygons", random_polygons(random), {kAsDelta});
         }
     }
 };
 
-TEST_F(DeltaRoutes, PatchAClientThroughAThousandChanges) {
+TEST_F(DeltaRoutes, PatchAClientThroughTwoThousandChanges) {
     test::Random random(7);
     DeltaClient direct, by_bytes, by_json, late;
     for (DeltaClient* client : {&direct, &by_bytes, &by_json, &late})
         ASSERT_EQ(client->patch(since(0, kAsDelta).body), "");
     int changes = 0;
-    int made[4] = {};
-    for (int i = 0; changes < 1000; ++i) {
-        ASSERT_LT(i, 4000);
+    std::map<std::string, int> made;
+    for (int i = 0; changes < 2000; ++i) {
+        ASSERT_LT(i, 8000);
         // Now and then anew, so that the mesh stays small.
         if (i % 60 == 59) {
             ask("DELETE", session);
@@ -118,14 +159,16 @@ TEST_F(DeltaRoutes, PatchAClientThroughAThousandChanges) {
             ASSERT_EQ(compare(late), "") << "change " << changes;
         }
         const json entry = json::parse(ask("GET", session + "/history").body)["changes"].back();
-        const std::string kind = entry["change"];
-        ++made[kind == "polygons" ? 0 : kind == "undo" ? 1 : kind == "redo" ? 2 : 3];
+        const std::string version = std::to_string(entry["version"].get<int>());
+        const json report = json::parse(ask("GET", session + "/history/" + version).body);
+        ++made[report.value("operation", entry["change"].get<std::string>())];
         ASSERT_TRUE(api::read_delta(answer.body).ok()) << "by the service's own reader";
     }
-    std::printf("polygons %d, undos %d, redos %d, removals %d\n", made[0], made[1], made[2],
-                made[3]);
-    for (const int count : made)
-        EXPECT_GT(count, 50);
+    EXPECT_EQ(made.size(), 9U);
+    for (const auto& [what, count] : made) {
+        std::printf("%s %d\n", what.c_str(), count);
+        EXPECT_GT(count, 30) << what;
+    }
 }
 
 TEST_F(DeltaRoutes, SayWhenTheyAreTheWhole) {

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/edit/smoothing.hpp"
+
+#include <algorithm>
+
+#include "core/integrate/distance.hpp"
+#include "core/mesh/walk.hpp"
+
+namespace tinsmith::core {
+
+namespace {
+
+/// An end of an edge at a vertex that moves.
+struct Neighbour {
+    std::size_t moving = SIZE_MAX;  ///< its place among those that move
+    double z = 0.0;                 ///< where it does not
+    double weight = 0.0;
+};
+
+class Smoothing {
+  public:
+    Smoothing(const Tin& tin, std::span<const Moving> moving) : tin_(tin), moving_(moving) {
+        now_.reserve(moving.size());
+        for (const Moving& each : moving)
+            now_.push_back(tin.vertex(each.vertex).z);
+        lists_.resize(moving.size());
+        for (const Moving& each : moving)
+            add_neighbours(each.vertex, lists_[place_of(each.leader)]);
+        next_ = now_;
+    }
+
+    void pass() {
+        for (std::size_t i = 0; i < lists_.size(); ++i) {
+            if (lists_[i].empty()) continue;  // another's, at its place
+            double pull = 0.0, weights = 0.0;
+            for (const auto& [other, z, weight] : lists_[i]) {
+                pull += weight * ((other == SIZE_MAX ? z : now_[other]) - now_[i]);
+                weights += weight;
+            }
+            next_[i] = now_[i] + pull / weights / 2.0;
+        }
+        now_.swap(next_);
+    }
+
+    std::vector<VertexMove> moves() const {
+        std::vector<VertexMove> moves;
+        moves.reserve(moving_.size());
+        for (const Moving& each : moving_)
+            moves.push_back({each.vertex, now_[place_of(each.leader)]});
+        return moves;
+    }
+
+  private:
+    std::size_t place_of(VertexId v) const {
+        const auto found = std::ranges::lower_bound(moving_, v, {}, &Moving::vertex);
+        const bool moves = found != moving_.end() && found->vertex == v;
+        return moves ? static_cast<std::size_t>(found - moving_.begin()) : SIZE_MAX;
+    }
+
+    void add_neighbours(VertexId v, std::vector<Neighbour>& list) const {
+        for_each_side_at(tin_, v, [&](Side side) {
+            const VertexId from = tin_.origin(side);
+            const VertexId other = from == v ? tin_.destination(side) : from;
+            const std::size_t place = place_of(other);
+            list.push_back({place == SIZE_MAX ? SIZE_MAX : place_of(moving_[place].leader),
+                            tin_.vertex(other).z,
+                            1.0 / distance_between(tin_.plan(v), tin_.plan(other))});
+        });
+    }
+
+    const Tin& tin_;
+    std::span<const Moving> moving_;
+    std::vector<std::vector<Neighbour>> lists_;  ///< of leaders; of others none
+    std::vector<double> now_;
+    std::vector<double> next_;
+};
+
+}  // namespace
+
+std::optional<std::vector<VertexMove>> smoothed(const Tin& tin, std::span<const Moving> moving,
+                                                std::uint32_t passes,
+                                                const std::function<bool()>& cancelled) {
+    Smoothing smoothing(tin, moving);
+    for (std::uint32_t i = 0; i < passes; ++i) {
+        if (cancelled && cancelled()) return std::nullopt;
+        smoothing.pass();
+    }
+    return smoothing.moves();
+}
+
+}  // namespace tinsmith::core
