@@ -63,7 +63,7 @@ class Work {
         }
         const Strip& strip = *edit.strip;
         ShapeReport ring;
-        if (auto errors = integrate(strip.ring, ring)) return errors;
+        if (auto errors = integrate(strip, ring)) return errors;
         const Region own = own_region();
         const Region within =
             find_region(tin_, ConstraintHistory(tin_), {strip.ring, ring.chains, ring.outside},
@@ -117,8 +117,32 @@ class Work {
         return find_region(tin_, ConstraintHistory(tin_), outline_, winding_);
     }
 
-    std::optional<Errors> integrate(const Shape& ring, ShapeReport& found) {
+    /// With the best triangles; but where that would swap edges beyond the border of a rim, which
+    /// lines integrated without improvement leave to be swapped, with none.
+    std::optional<Errors> integrate(const Strip& strip, ShapeReport& found) {
+        const Region before = strip.kind == Strip::Kind::Rim ? own_region() : Region{};
+        if (auto errors = integrate(strip.ring, Improve::Strict, found)) return errors;
+        if (strip.kind == Strip::Kind::Taper || !has_changed_beyond(before)) return std::nullopt;
+        take_back(tin_, done_);
+        done_.clear();
+        return integrate(strip.ring, Improve::None, found);
+    }
+
+    bool has_changed_beyond(const Region& region) const {
+        const auto& inside = region.triangles;
+        for (const UndoRecord& record : done_) {
+            for (const auto& [t, old] : record.triangles) {
+                if (old.vertices != tin_.triangle(t).vertices &&
+                    !std::binary_search(inside.begin(), inside.end(), t))
+                    return true;
+            }
+        }
+        return false;
+    }
+
+    std::optional<Errors> integrate(const Shape& ring, Improve improve, ShapeReport& found) {
         IntegrateOptions options;
+        options.improve = improve;
         options.max_crossings = limits_.max_crossings;
         options.max_new_triangles = limits_.max_new_triangles;
         options.ids = limits_.ids;
@@ -126,7 +150,9 @@ class Work {
         options.clock_ms = limits_.clock_ms;
         auto report = integrate_ring(tin_, ring, options, &done_);
         if (!report) return std::move(report.errors());
-        report_.time_ms = report->time_ms;
+        report_.time_ms.locate += report->time_ms.locate;
+        report_.time_ms.integrate += report->time_ms.integrate;
+        report_.time_ms.improve += report->time_ms.improve;
         found = std::move(report->shapes.front());
         report_.vertices_added = found.vertices_added;
         report_.triangles_added = found.triangles_added;

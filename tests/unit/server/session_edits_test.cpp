@@ -208,7 +208,7 @@ class RandomEdits {
         const bool is_bounded = made.edit && !made.edit->moves_border &&
                                 (made.edit->rim || made.edit->operation == api::EditKind::Smooth);
         if (is_bounded) {
-            EXPECT_EQ(compare_outside(before, region), "");
+            EXPECT_EQ(compare_outside(before, region), "") << kind;
             ++counts["bounded"];
         }
         made.ids = std::get<0>(std::move(done));
