@@ -24,8 +24,7 @@ struct OperationRow {
     std::string_view members;  ///< that it takes, each between blanks
 };
 constexpr std::array kOperations{
-    OperationRow{EditKind::Set, "set",
-                 " elevation plane slope azimuth point border rim taper "},
+    OperationRow{EditKind::Set, "set", " elevation plane slope azimuth point border rim taper "},
     OperationRow{EditKind::Offset, "offset", " by border rim taper "},
     OperationRow{EditKind::Smooth, "smooth", " passes border "},
     OperationRow{EditKind::Remove, "remove", " "},
