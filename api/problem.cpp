@@ -177,8 +177,8 @@ Problem problem_of_errors(const core::Errors& errors, Faults faults) {
     std::string detail = summary_of(faults);
     if (type == Stopped) {
         detail =
-            "The edit ran longer than this server allows, or the server is stopping; the "
-            "session is as it was. Send smaller parts, or try again.";
+            "The edit ran longer than this server allows, its job was deleted, or the server is "
+            "stopping; the session is as it was. Send smaller parts, or try again.";
     }
     return {type, std::move(detail), std::move(faults)};
 }

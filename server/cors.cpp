@@ -58,6 +58,14 @@ void answer_preflight(const Request& request, Response& response) {
 
 }  // namespace
 
+std::span<const std::string_view> understood_headers() {
+    return kUnderstood;
+}
+
+std::string_view exposed_headers() {
+    return kExposed;
+}
+
 void allow_origin(const Policy& policy, const Request& request, Response& response) {
     if (policy.cors_origins.empty()) return;
     const bool for_all = contains(policy.cors_origins, "*");

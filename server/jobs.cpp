@@ -122,7 +122,7 @@ void Jobs::run_jobs() {
             const WorkScope scope(job->work);
             answer = job->task(job->request);
         }
-        job->work.finish();
+        if (answer.status < kFirstRefusal) job->work.finish();
         log_end(job->view.id, job->request, answer, clock_() - start);
         lock.lock();
         end(*job, std::move(answer));

@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {project, startServer} from '../support/program.mjs';
+import {ask as send, project, startServer} from '../support/program.mjs';
 import {checkGlb} from './check_glb.mjs';
 
 let server, url;
@@ -19,7 +19,7 @@ before(async () => {
 after(() => server.stop());
 
 async function ask(path, options) {
-  const answer = await fetch(url + path, options);
+  const answer = await send(url + path, options);
   assert.equal(answer.status, 200, `${path}: ${answer.status}`);
   return answer;
 }

@@ -2,12 +2,13 @@
 // /openapi.json as the checks read it.
 
 import Ajv from 'ajv/dist/2020.js';
+import {ask} from '../support/program.mjs';
 
 const METHODS = ['get', 'post', 'put', 'delete'];
 
 export class Description {
   static async of(origin) {
-    return new Description(await (await fetch(`${origin}/openapi.json`)).json());
+    return new Description(await (await ask(`${origin}/openapi.json`)).json());
   }
 
   constructor(document) {

@@ -9,7 +9,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, test} from 'node:test';
 import {parseHTML} from 'linkedom';
-import {project, startServer} from '../support/program.mjs';
+import {ask, project, startServer} from '../support/program.mjs';
 import {Description} from './description.mjs';
 import {Client, successOf} from './requests.mjs';
 
@@ -20,7 +20,7 @@ after(async () => {
   await server.stop();
 });
 
-const text = async (path) => (await fetch(server.origin + path)).text();
+const text = async (path) => (await ask(server.origin + path)).text();
 const description = await Description.of(server.origin);
 const client = new Client(server.origin, description);
 writeFileSync(join(folder, 'page.mjs'), await text('/docs/page.mjs'));
@@ -37,13 +37,13 @@ const dom = page();
 const said = dom.querySelector('main').textContent;
 
 test('nothing is loaded from elsewhere, and the policy forbids it', async () => {
-  const policy = (await fetch(`${server.origin}/docs`)).headers.get('content-security-policy');
+  const policy = (await ask(`${server.origin}/docs`)).headers.get('content-security-policy');
   assert.match(policy, /^default-src 'none'; script-src 'self'; style-src 'self';/);
   assert.doesNotMatch(policy, /unsafe|\*|https?:/);
   for (const element of parseHTML(html).document.querySelectorAll('[src], link[href]')) {
     const target = element.getAttribute('src') ?? element.getAttribute('href');
     assert.match(target, /^(docs\/page\.|data:,$)/);
-    if (!target.startsWith('data:')) assert.equal((await fetch(`${server.origin}/${target}`)).status, 200);
+    if (!target.startsWith('data:')) assert.equal((await ask(`${server.origin}/${target}`)).status, 200);
   }
   assert.doesNotMatch(html, /<script[^>]*>[^<]|style=|onload=/, 'no script and no style in the page itself');
   assert.equal(dom.querySelectorAll('[style]').length, 0);

@@ -4,7 +4,7 @@
 
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {startServer} from '../support/program.mjs';
+import {ask, startServer} from '../support/program.mjs';
 import {Description} from './description.mjs';
 import {alike} from './alike.mjs';
 import {Client, ELSEWHERE, exampleCases, REFUSALS, STRICT, STRICT_REFUSALS} from './requests.mjs';
@@ -70,7 +70,7 @@ async function later(id, {values, headers, body}, first) {
   assert.equal(description.faults({$ref: '#/components/schemas/Job'}, job), '');
   assert.equal(job.state, 'done', JSON.stringify(job));
   assert.equal(String(job.status), first.status);
-  const result = await fetch(server.origin + job.result);
+  const result = await ask(server.origin + job.result);
   assert.equal(String(result.status), first.status);
   assert.equal(result.headers.get('content-type'), first.type);
   if (first.json) assert.equal(alike(first.json, await result.json()), '');

@@ -8,7 +8,7 @@ import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {fileURLToPath} from 'node:url';
-import {startServer} from '../support/program.mjs';
+import {ask, startServer} from '../support/program.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'tinsmith-openapi-'));
@@ -16,7 +16,7 @@ let server, text;
 
 before(async () => {
   server = await startServer();
-  text = JSON.stringify(await (await fetch(`${server.origin}/openapi.json`)).json(), null, 1);
+  text = JSON.stringify(await (await ask(`${server.origin}/openapi.json`)).json(), null, 1);
 });
 after(async () => {
   rmSync(folder, {recursive: true});

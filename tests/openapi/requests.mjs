@@ -5,7 +5,7 @@
 import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {setTimeout} from 'node:timers/promises';
-import {project} from '../support/program.mjs';
+import {ask, project} from '../support/program.mjs';
 
 /** What a case needs to have been done before, by operation; others: a session with one polygon. */
 const BEFORE = {
@@ -51,7 +51,7 @@ export class Client {
       if (!operation.parameters.some((p) => this.description.resolve(p).name === name)) query.set(name, values[name]);
     // Of a form the library says the type, with its boundary.
     if (body.type && body.type !== FORM) headers = {'Content-Type': body.type, ...headers};
-    const response = await fetch(`${this.origin}${path}${query.size > 0 ? `?${query}` : ''}`, {
+    const response = await ask(`${this.origin}${path}${query.size > 0 ? `?${query}` : ''}`, {
       method: operation.method.toUpperCase(),
       headers: {'X-Request-Id': 'example', ...headers},
       ...(raw ?? {body: contentOf(body)}),
@@ -61,7 +61,7 @@ export class Client {
 
   /** Nothing but what the case needs. */
   async prepare(id) {
-    for (const session of ['square', 'other']) await fetch(`${this.origin}/v1/sessions/${session}`, {method: 'DELETE'});
+    for (const session of ['square', 'other']) await ask(`${this.origin}/v1/sessions/${session}`, {method: 'DELETE'});
     for (const step of BEFORE[id] ?? USUAL) await this.example(step);
     if (id === 'askVolume') await this.example('putSession', {id: 'other'});
     if (!ABOUT_A_JOB.includes(id)) return;
@@ -74,7 +74,7 @@ export class Client {
   /** Waits for a job's end; what it was then. */
   async end(accepted) {
     for (;;) {
-      const job = await (await fetch(this.origin + accepted.headers.get('location'))).json();
+      const job = await (await ask(this.origin + accepted.headers.get('location'))).json();
       if (!['queued', 'running'].includes(job.state)) return job;
       await setTimeout(5);
     }

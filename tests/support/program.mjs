@@ -13,6 +13,11 @@ import {fileURLToPath} from 'node:url';
 export const project = join(dirname(fileURLToPath(import.meta.url)), '../..');
 export const program = process.env.TINSMITH ?? join(project, 'build/release/tinsmith');
 
+/** fetch on a connection of its own: one that is kept may be closed by the server while nobody looks. */
+export function ask(url, options = {}) {
+  return fetch(url, {...options, headers: {Connection: 'close', ...options.headers}});
+}
+
 /** Serves on a free port: {origin, stop}. `stop` fails unless the program ends well. */
 export async function startServer(...options) {
   const folder = mkdtempSync(join(tmpdir(), 'tinsmith-'));

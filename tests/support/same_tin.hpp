@@ -31,8 +31,8 @@ inline bool same_tin(const core::Tin& a, const core::Tin& b) {
     }
     return a.name_count() == b.name_count() && a.named_split_count() == b.named_split_count() &&
            a.gone_ends().size() == b.gone_ends().size() &&
-           a.built_vertex_count() == b.built_vertex_count() &&
-           a.next_facet() == b.next_facet() && a.facet_error() == b.facet_error() &&
+           a.built_vertex_count() == b.built_vertex_count() && a.next_facet() == b.next_facet() &&
+           a.facet_error() == b.facet_error() &&
            std::memcmp(&a.bounds(), &b.bounds(), sizeof a.bounds()) == 0;
 }
 

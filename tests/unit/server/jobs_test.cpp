@@ -107,6 +107,18 @@ TEST_F(JobsTest, StopWhatRunsAndWhatWaits) {
     EXPECT_FALSE(jobs.view(running->id)) << "the second time it is deleted";
 }
 
+TEST_F(JobsTest, StandWhereTheyWereStopped) {
+    Jobs jobs({});
+    std::promise<void> begun;
+    const auto job = jobs.add(request(), [&begun](const Request& r) {
+        begin_stage(1.0);
+        stage_progress()(0.25);
+        return endless(begun, r);
+    });
+    begun.get_future().wait();
+    EXPECT_EQ(jobs.remove(job->id, kLong)->progress, 0.25);
+}
+
 TEST_F(JobsTest, AreDoneWhereTheStopComesTooLate) {
     Jobs jobs({});
     std::promise<void> begun;

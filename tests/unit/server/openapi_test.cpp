@@ -66,7 +66,8 @@ class OpenApi : public Handlers {
             const std::size_t at = target.find(name);
             if (at != target.npos) target.replace(at, name.size(), value);
         };
-        fill("/v1/sessions/{id}", method == "PUT" ? "/v1/sessions/probe" : session);
+        const bool is_made = method == "PUT" && path == "/v1/sessions/{id}";
+        fill("/v1/sessions/{id}", is_made ? "/v1/sessions/probe" : session);
         fill("{pid}", "p1");
         fill("{version}", "2");
         fill("{file}", "page.css");

@@ -54,10 +54,11 @@ TEST_F(VersionRoutes, SendTheMeshAsItWas) {
 
 TEST_F(VersionRoutes, KeepWhatWasUndoneRemovedAndReplaced) {
     test::Random random(11);
+    int edits = 0;
     remember();
-    for (int i = 0; i < 120; ++i) {
+    for (int i = 0; i < 300; ++i) {
         Response answer;
-        switch (test::pick(random, 6)) {
+        switch (test::pick(random, 8)) {
             case 0:
                 answer = ask("POST", session + "/undo");
                 break;
@@ -66,7 +67,15 @@ TEST_F(VersionRoutes, KeepWhatWasUndoneRemovedAndReplaced) {
                 break;
             case 2: {
                 const std::string some = "p" + std::to_string(1 + test::pick(random, i + 1));
-                answer = ask("DELETE", session + "/polygons/" + some);
+                answer = ask("DELETE", session + "/polygons/" + some + "?cascade=true");
+                break;
+            }
+            case 3: {
+                const json edit{{"operation", "offset"},
+                                {"polygon", "p" + std::to_string(1 + test::pick(random, i + 1))},
+                                {"by", test::uniform(random, -1, 1)}};
+                answer = post(session + "/edits", edit.dump());
+                edits += answer.status == 200;
                 break;
             }
             default: {
@@ -78,6 +87,7 @@ TEST_F(VersionRoutes, KeepWhatWasUndoneRemovedAndReplaced) {
         if (answer.status == 200) remember();
         if (i % 20 == 0) expect_all();
     }
+    EXPECT_GT(edits, 3);
     expect_all();
     const Response forked = ask("POST", session + "/fork");
     session = "/v1/sessions/" + json::parse(forked.body)["id"].get<std::string>();
