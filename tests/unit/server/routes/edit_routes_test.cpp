@@ -140,7 +140,8 @@ TEST_F(EditRoutes, RefuseWhatCannotBeDoneByName) {
     // All of it.
     post(session + "/polygons",
          R"({"type": "Polygon", "coordinates": [[[-1,-1],[11,-1],[11,11],[-1,11],[-1,-1]]]})");
-    EXPECT_EQ(fault(edit({{"operation", "remove"}, {"polygon", "p5"}})), "422 NOTHING_LEFT /polygon");
+    EXPECT_EQ(fault(edit({{"operation", "remove"}, {"polygon", "p5"}})),
+              "422 NOTHING_LEFT /polygon");
     EXPECT_EQ(fault(edit({{"operation", "keep"}, {"polygon", "p5"}})).substr(0, 3), "{\"s");
     EXPECT_EQ(post(session + "/edits", "{").status, 400);
     EXPECT_EQ(ask("POST", session + "/edits", {{"content-type", "text/csv"}}, "x").status, 415);
