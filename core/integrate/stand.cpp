@@ -117,7 +117,7 @@ VertexId March::place_on(Side edge, Point2 p) {
         const std::uint32_t below = deepest_corner(t);
         const double strays = tin_.is_constrained(edge) ? stray_of(edge, p) : 0.0;
         const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_in(tin_, t, p)});
-        drift_.stray(v, strays);
+        if (strays > drift_.usual()) drift_.stray(v, strays);
         drift_.nest(v, below);
         changed_.push_back(v);
         return v;
