@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <geos_c.h>
@@ -70,7 +71,10 @@ class Geos {
         }
         const Geometry all = own(GEOSGeom_createCollection_r(
             handle_, GEOS_GEOMETRYCOLLECTION, parts.data(), static_cast<unsigned>(parts.size())));
-        return own(all ? GEOSCoverageUnion_r(handle_, all.get()) : nullptr);
+        if (!all) return own(nullptr);
+        Geometry area = own(GEOSCoverageUnion_r(handle_, all.get()));
+        // It gives up where the area touches itself around a place that is none of it.
+        return area ? std::move(area) : own(GEOSUnaryUnion_r(handle_, all.get()));
     }
 
     Geometry buffer(const GEOSGeometry* area, double distance) const {

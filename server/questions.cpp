@@ -61,9 +61,13 @@ Ground copy_ground(const Session& session, const std::string& polygon_id = {}) {
     });
 }
 
+double plan_area(const core::Tin& tin, std::span<const core::TriangleId> triangles) {
+    return core::volume_against(tin, triangles, core::level_plane(0.0)).area;
+}
+
 PartOutcome whole_of(core::Tin tin) {
     auto all = core::all_triangles(tin);
-    const double area = core::volume_against(tin, all, core::level_plane(0.0)).area;
+    const double area = plan_area(tin, all);
     return Part{std::move(tin), std::move(all), area};
 }
 
@@ -185,8 +189,13 @@ VolumeOutcome volume_in(const Session& session, const api::VolumeRequest& reques
                                            stage_progress());
         if (!volume) return std::move(volume.errors());
         answer.volume = *volume;
+        if (request.polygon_id.empty() && !request.shape) {
+            // Asked for is all that either covers.
+            const double area = plan_area(surface.tin, core::all_triangles(surface.tin));
+            answer.area_left_out = left_out(area, answer.volume.area);
+        }
     }
-    answer.area_left_out = left_out(part.area, answer.volume.area);
+    answer.area_left_out += left_out(part.area, answer.volume.area);
     return answer;
 }
 

@@ -74,6 +74,16 @@ TEST(RingOffset, OfCrossingLinesIsByTheWindingRuleWhicheverWayTheyRun) {
     EXPECT_NEAR(area_of(inside(overlapping, 0.5, Winding::NonZero).ring), 15, 1e-9);
 }
 
+TEST(RingOffset, TakesAnAreaThatTouchesItselfAroundAnotherPlace) {
+    const Shape crossing{
+        {{{{0, 9.3}, {7.7, 4}, {0.1, 8.2}, {3.4, 5}, {3.2, 8.3}, {2.3, 0.7}}, true, {}}}};
+    EXPECT_NEAR(area_of(inside(crossing, 0.001).border), 11.09, 0.01);
+    EXPECT_LT(area_of(inside(crossing, 0.001).ring), area_of(crossing));
+    EXPECT_GT(area_of(outside(crossing, 1.0).ring), area_of(crossing));
+    const Shape holes{{box(0, 0, 10, 10), box(2, 2, 6, 6), box(4, 4, 8, 8)}};
+    EXPECT_NEAR(area_of(inside(holes, 0.01).border), 100 - 24, 1e-9);
+}
+
 TEST(RingOffset, SaysWhatAThinPartBears) {
     const NoRing thin = no_ring({{box(0, 0, 100, 1)}}, 2);
     EXPECT_EQ(thin.reason, NoRing::Reason::TooThin);

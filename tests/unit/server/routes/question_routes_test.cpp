@@ -186,6 +186,7 @@ TEST_F(Questions, VolumeAgainstAnotherSession) {
         post("/v1/sessions/" + other + "/volume", R"({"against": {"session": ")" + ours + R"("}})")
             .body);
     EXPECT_DOUBLE_EQ(back["cut"].get<double>(), found["fill"].get<double>());
+    EXPECT_EQ(back["area_left_out"], 50.0) << "whichever of them covers it";
     const auto itself = volume(R"({"against": {"session": ")" + ours + R"("}})");
     EXPECT_EQ(itself["cut"], 0.0);
     EXPECT_EQ(itself["fill"], 0.0);
