@@ -109,6 +109,11 @@ bool found_nothing(const core::Errors& errors) {
     return errors.front().code == core::ErrorCode::NoEdgeAlong;
 }
 
+/// What ends a request whatever its other paths are.
+bool ends_all(core::ErrorCode code) {
+    return code == core::ErrorCode::CrossingBudget || code == core::ErrorCode::Cancelled;
+}
+
 /// Whole or not at all: a path that is refused takes the others with it, all faults are told.
 core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
                                   std::shared_ptr<Applied> applied, const RunLimits& limits,
@@ -116,6 +121,7 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
     const auto done = std::make_shared<LocksDone>();
     done->locked = locks.locked;
     Guard guard(tin, applied->undo);
+    core::LockBudget budget{limits.max_crossings, limits.cancelled};  // of all paths together
     core::Errors errors;
     for (std::size_t s = 0; s < locks.shapes.size(); ++s) {
         for (std::size_t p = 0; p < locks.shapes[s].paths.size(); ++p) {
@@ -125,7 +131,7 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
             const core::Path& path = locks.shapes[s].paths[p];
             applied->undo.emplace_back(core::Surgery(tin).commit());  // of nothing: room first
             core::Undo undo;
-            auto report = core::lock_along(tin, path, locks.reach, locks.locked, &undo);
+            auto report = core::lock_along(tin, path, locks.reach, locks.locked, &undo, &budget);
             if (report) {
                 applied->undo.back() = std::move(undo.front());
                 done->paths.push_back(std::move(*report));
@@ -136,6 +142,7 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const LocksOperation& locks,
                     if (errors.size() >= core::kMaxFaults) break;
                     error.place.shape = s;
                     error.place.path = p;
+                    if (ends_all(error.code)) return std::move(error);
                     errors.push_back(std::move(error));
                 }
             }

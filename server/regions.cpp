@@ -2,13 +2,15 @@
 #include "server/regions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
+#include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "core/regions/constraint_history.hpp"
-#include "core/regions/coverage.hpp"
+#include "server/polygon_groups.hpp"
 
 namespace tinsmith::server {
 
@@ -59,105 +61,230 @@ Group near_ones(std::span<const Polygon> all, std::span<const std::size_t> wante
     return near;
 }
 
-class RegionTelling {
+/// What is left of the limits.
+class Allowance {
   public:
-    RegionTelling(const core::Tin& tin, std::span<const Polygon> all, const Group& near)
-        : tin_(tin), all_(all), regions_(all.size()) {
-        const core::ConstraintHistory history(tin);
-        std::vector<core::Coverage::Area> areas;
-        std::vector<core::Linework::Lines> lines;
-        for (const std::size_t i : near) {
-            const core::ShapeReport& report = all[i].own_report();
-            lines.push_back({i, report.chains});
-            if (!all[i].has_inside()) continue;
-            regions_[i] =
-                core::find_region(tin, history, {all[i].outline(), report.chains, report.outside},
-                                  all[i].request.winding);
-            areas.push_back({i, &regions_[i]});
+    explicit Allowance(const RegionLimits& limits) : limits_(limits), left_(limits.max_visits) {}
+
+    /// False once the limits are met, and from then on. Asks whether to stop now and then.
+    bool spend(std::uint64_t visits) {
+        if (refused_) return false;
+        if (visits > left_) {
+            refused_ =
+                core::Error{core::ErrorCode::CrossingBudget,
+                            "the regions have more than " + std::to_string(limits_.max_visits) +
+                                " triangles and edges together with those of the polygons "
+                                "near them; ask for fewer at a time",
+                            {}};
+            return false;
         }
-        coverage_ = core::Coverage(areas);
-        linework_ = core::Linework(history, lines);
+        left_ -= visits;
+        constexpr std::uint64_t kAskEvery = 4096;
+        spent_ += visits;
+        if (spent_ < kAskEvery) return true;
+        spent_ = 0;
+        return goes_on();
     }
 
-    api::RegionView tell(std::size_t polygon) const {
+    bool goes_on() {
+        if (!refused_ && limits_.cancelled && limits_.cancelled())
+            refused_ = core::Error{core::ErrorCode::Cancelled, "the question was stopped", {}};
+        return !refused_;
+    }
+
+    const std::optional<core::Error>& refused() const { return refused_; }
+
+  private:
+    const RegionLimits& limits_;
+    std::uint64_t left_;
+    std::uint64_t spent_ = 0;  ///< since the last question
+    std::optional<core::Error> refused_;
+};
+
+class RegionTelling {
+  public:
+    RegionTelling(const RegionGround& ground, const RegionLimits& limits)
+        : ground_(ground), allowance_(limits) {}
+
+    core::Result<std::vector<api::RegionView>> tell() {
+        std::vector<api::RegionView> views;
+        if (gather()) {
+            for (std::size_t i = 0; i < ground_.polygons.size(); ++i)
+                if (ground_.polygons[i].is_wanted && !tell_region(i, views)) break;
+        }
+        if (allowance_.refused()) return *allowance_.refused();
+        return views;
+    }
+
+  private:
+    /// Finds the regions, and keeps of those not wanted only which triangles they have.
+    bool gather() {
+        const core::ConstraintHistory history(ground_.tin);
+        around_.resize(ground_.tin.triangle_count(), PolygonGroups::kNone);
+        regions_.resize(ground_.polygons.size());
+        for (std::size_t i = 0; i < ground_.polygons.size(); ++i) {
+            if (!allowance_.goes_on()) return false;
+            const std::size_t groups_before = groups_.count();
+            groups_.begin(i);
+            const RegionGround::Drawn& polygon = ground_.polygons[i];
+            if (!gather_edges(history, polygon)) return false;
+            if (!polygon.has_inside) continue;
+            core::Region region = core::find_region(
+                ground_.tin, history,
+                {polygon.shape, polygon.report.chains, polygon.report.outside}, polygon.winding);
+            if (!allowance_.spend(region.triangles.size())) return false;
+            for (const core::TriangleId t : region.triangles)
+                around_[t.index()] = groups_.with(around_[t.index()]);
+            if (!spend_ids(groups_.count() - groups_before)) return false;
+            if (polygon.is_wanted) regions_[i] = std::move(region);
+        }
+        return true;
+    }
+
+    bool gather_edges(const core::ConstraintHistory& history, const RegionGround::Drawn& polygon) {
+        for (const core::Chain& chain : polygon.report.chains) {
+            const auto edges = history.edges_along(chain.vertices);
+            if (!allowance_.spend(edges.size())) return false;
+            for (const auto& [a, b] : edges) {
+                PolygonGroups::Id& group = along_[core::edge_key(a, b)];
+                group = groups_.with(group);
+            }
+        }
+        return true;
+    }
+
+    bool tell_region(std::size_t polygon, std::vector<api::RegionView>& views) {
         const core::Region& region = regions_[polygon];
         api::RegionView view;
-        view.polygon = all_[polygon].id();
-        view.winding = all_[polygon].request.winding;
+        view.polygon = ground_.polygons[polygon].id;
+        view.winding = ground_.polygons[polygon].winding;
         view.plan_area = region.plan_area;
         view.surface_area = region.surface_area;
         for (const core::TriangleId t : region.triangles)
             view.triangles.push_back(t.value);
-        tell_others(polygon, view);
-        tell_edges(polygon, view);
-        return view;
+        if (!tell_others(polygon, view) || !tell_edges(polygon, view)) return false;
+        views.push_back(std::move(view));
+        return true;
     }
 
-  private:
-    void tell_others(std::size_t polygon, api::RegionView& view) const {
-        const std::vector<core::TriangleId>& triangles = regions_[polygon].triangles;
-        std::map<Group, std::vector<std::uint32_t>> shared;
+    bool tell_others(std::size_t polygon, api::RegionView& view) {
+        std::vector<std::pair<PolygonGroups::Id, std::uint32_t>> sorted;
+        for (const core::TriangleId t : regions_[polygon].triangles)
+            sorted.emplace_back(around_[t.index()], t.value);
+        if (!allowance_.spend(sorted.size())) return false;
+        std::sort(sorted.begin(), sorted.end());
+        std::vector<std::pair<Group, std::vector<std::uint32_t>>> shared;
         Group within;
-        for (std::size_t k = 0; k < triangles.size(); ++k) {
-            const auto around = coverage_.containing(triangles[k]);
-            Group others(around.begin(), around.end());
+        for (std::size_t k = 0; k < sorted.size();) {
+            const PolygonGroups::Id id = sorted[k].first;
+            if (!spend_ids(groups_.size(id))) return false;
+            Group others = groups_.members(id);
             std::erase(others, polygon);
             Group still;
             std::set_intersection(within.begin(), within.end(), others.begin(), others.end(),
                                   std::back_inserter(still));
             within = k == 0 ? others : std::move(still);
-            if (!others.empty()) shared[std::move(others)].push_back(triangles[k].value);
+            std::vector<std::uint32_t> slots;
+            for (; k < sorted.size() && sorted[k].first == id; ++k)
+                slots.push_back(sorted[k].second);
+            if (!others.empty()) shared.emplace_back(std::move(others), std::move(slots));
         }
+        std::sort(shared.begin(), shared.end());
         view.within = ids_of(within);
         for (auto& [others, slots] : shared)
             view.shared.push_back({ids_of(others), std::move(slots)});
+        return true;
     }
 
-    void tell_edges(std::size_t polygon, api::RegionView& view) const {
-        std::map<Group, std::vector<std::array<std::uint32_t, 2>>> edges;
+    bool tell_edges(std::size_t polygon, api::RegionView& view) {
+        using Ends = std::array<std::uint32_t, 2>;
+        const core::Tin& tin = ground_.tin;
+        std::unordered_map<PolygonGroups::Id, std::vector<Ends>> edges;
         for (const core::TriangleId t : regions_[polygon].triangles) {
+            if (!allowance_.spend(1)) return false;
             for (unsigned i = 0; i < 3; ++i) {
                 const core::Side side(t, i);
-                if (!tin_.is_constrained(side)) continue;
-                const core::Side twin = tin_.twin(side);
+                if (!tin.is_constrained(side)) continue;
+                const core::Side twin = tin.twin(side);
                 if (twin.valid() && twin < side && contains(polygon, twin.triangle())) continue;
-                const auto along = linework_.along(tin_, side);
-                edges[Group(along.begin(), along.end())].push_back(
-                    {tin_.origin(side).value, tin_.destination(side).value});
+                const core::VertexId from = tin.origin(side), to = tin.destination(side);
+                const auto along = along_.find(core::edge_key(from, to));
+                edges[along == along_.end() ? PolygonGroups::kNone : along->second].push_back(
+                    {from.value, to.value});
             }
         }
-        for (auto& [along, pairs] : edges)
+        std::vector<std::pair<Group, std::vector<Ends>>> told;
+        for (auto& [id, pairs] : edges) {
+            if (!spend_ids(groups_.size(id))) return false;
+            told.emplace_back(groups_.members(id), std::move(pairs));
+        }
+        std::sort(told.begin(), told.end());
+        for (auto& [along, pairs] : told)
             view.edges.push_back({ids_of(along), std::move(pairs)});
+        return true;
     }
 
     bool contains(std::size_t polygon, core::TriangleId t) const {
-        const auto around = coverage_.containing(t);
-        return std::binary_search(around.begin(), around.end(), polygon);
+        const auto& triangles = regions_[polygon].triangles;
+        return std::binary_search(triangles.begin(), triangles.end(), t);
+    }
+
+    /// An id, or a group, takes the room of some triangles.
+    bool spend_ids(std::size_t count) {
+        constexpr std::uint64_t kTrianglesOfAnId = 8;
+        return allowance_.spend(kTrianglesOfAnId * count);
     }
 
     std::vector<std::string> ids_of(const Group& group) const {
         std::vector<std::string> ids;
+        ids.reserve(group.size());
         for (const std::size_t i : group)
-            ids.push_back(all_[i].id());
+            ids.push_back(ground_.polygons[i].id);
         return ids;
     }
 
-    const core::Tin& tin_;
-    std::span<const Polygon> all_;
-    std::vector<core::Region> regions_;  ///< one for each polygon, those far away empty
-    core::Coverage coverage_{{}};
-    core::Linework linework_{core::ConstraintHistory(tin_), {}};
+    const RegionGround& ground_;
+    Allowance allowance_;
+    PolygonGroups groups_;
+    std::vector<PolygonGroups::Id> around_;                       ///< by triangle
+    std::unordered_map<std::uint64_t, PolygonGroups::Id> along_;  ///< by `core::edge_key`
+    std::vector<core::Region> regions_;  ///< one for each polygon, those not wanted empty
 };
 
 }  // namespace
 
-std::vector<api::RegionView> find_regions(const core::Tin& tin, std::span<const Polygon> all,
-                                          std::span<const std::size_t> wanted) {
-    const RegionTelling telling(tin, all, near_ones(all, wanted));
-    std::vector<api::RegionView> views;
-    for (const std::size_t i : wanted)
-        views.push_back(telling.tell(i));
-    return views;
+std::size_t region_bytes(const core::Tin& tin, std::span<const Polygon> all) {
+    constexpr std::size_t kOfAnEdge = 40;  // in the table by edges
+    constexpr std::size_t kOfASplit = 24;  // in the history
+    std::size_t sum = tin.triangle_count() * sizeof(PolygonGroups::Id) +
+                      tin.constraint_splits().size() * (kOfASplit + kOfAnEdge);
+    for (const Polygon& polygon : all) {
+        sum += sizeof(RegionGround::Drawn);
+        for (const core::Path& path : polygon.outline().paths)
+            sum += sizeof path + path.points.size() * sizeof(core::Point2) +
+                   path.elevations.size() * sizeof(double);
+        for (const core::Chain& chain : polygon.own_report().chains)
+            sum += sizeof chain + chain.vertices.size() * (sizeof(core::VertexId) + kOfAnEdge);
+        for (const core::OutsidePart& part : polygon.own_report().outside)
+            sum += sizeof part + part.points.size() * sizeof(core::Point2);
+    }
+    return sum;
+}
+
+RegionGround region_ground(const core::Tin& tin, std::span<const Polygon> all,
+                           std::span<const std::size_t> wanted) {
+    RegionGround ground{tin, {}};
+    for (const std::size_t i : near_ones(all, wanted)) {
+        ground.polygons.push_back({all[i].id(), all[i].has_inside(),
+                                   std::binary_search(wanted.begin(), wanted.end(), i),
+                                   all[i].request.winding, all[i].outline(), all[i].own_report()});
+    }
+    return ground;
+}
+
+core::Result<std::vector<api::RegionView>> find_regions(const RegionGround& ground,
+                                                        const RegionLimits& limits) {
+    return RegionTelling(ground, limits).tell();
 }
 
 }  // namespace tinsmith::server

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -66,9 +67,11 @@ struct Match {
 
 class LineSearch {
   public:
-    LineSearch(const Tin& tin, double reach) : tin_(tin), reach_(reach) {}
+    LineSearch(const Tin& tin, double reach, LockBudget& budget)
+        : tin_(tin), reach_(reach), budget_(budget) {}
 
-    void search(const Axis& axis) {
+    /// False where the budget ends it; then `refused` says why.
+    bool search(const Axis& axis) {
         TriangleSet seen(tin_.triangle_count());
         std::vector<TriangleId> pending;
         const auto visit = [&](TriangleId t) {
@@ -79,15 +82,19 @@ class LineSearch {
         while (!pending.empty()) {
             const TriangleId t = pending.back();
             pending.pop_back();
+            if (!spend(1)) return false;
             for (unsigned i = 0; i < 3; ++i) {
                 const Side side(t, i);
                 if (!is_near(axis, side)) continue;
                 const Side twin = tin_.twin(side);
                 if (twin.valid()) visit(twin.triangle());
-                if (!twin.valid() || side < twin) match(axis, side);
+                if ((!twin.valid() || side < twin) && !match(axis, side)) return false;
             }
         }
+        return !refused_;
     }
+
+    const std::optional<Error>& refused() const { return refused_; }
 
     /// The edges that the matches cover from end to end, with what they cover of the line.
     std::pair<std::vector<Side>, std::vector<Interval>> covered() {
@@ -120,7 +127,7 @@ class LineSearch {
   private:
     /// A triangle at the segment's start, and those at the boundary within reach: from these all
     /// triangles near the segment are reached through edges near it.
-    std::vector<TriangleId> seeds(const Axis& axis) const {
+    std::vector<TriangleId> seeds(const Axis& axis) {
         std::vector<TriangleId> found;
         const Location start = locate(tin_, axis.start, tin_.hint(axis.start));
         if (start.kind == Location::Kind::OnVertex)
@@ -128,6 +135,7 @@ class LineSearch {
         else if (start.kind != Location::Kind::Outside)
             found.push_back(start.side.triangle());
         for (const VertexId v : tin_.boundary().near(axis.start, axis.end, reach_)) {
+            if (!spend(1)) break;
             const Side edge = boundary_side_from(tin_, v);
             if (edge.valid() && is_near(axis, edge)) found.push_back(edge.triangle());
         }
@@ -151,30 +159,52 @@ class LineSearch {
                orientation(axis.start, axis.end, p) != orientation(axis.start, axis.end, q);
     }
 
-    /// Notes what of the edge lies along the segment.
-    void match(const Axis& axis, Side side) {
+    /// Notes what of the edge lies along the segment. False where the budget ends it.
+    bool match(const Axis& axis, Side side) {
         const Point2 p = tin_.plan(tin_.origin(side));
         const Point2 q = tin_.plan(tin_.destination(side));
         const double p_along = axis.along(p), q_along = axis.along(q);
         const double p_across = axis.across(p), q_across = axis.across(q);
         const double run = q_along - p_along;
-        if (!(std::fabs(run) > std::fabs(q_across - p_across))) return;
+        if (!(std::fabs(run) > std::fabs(q_across - p_across))) return true;
         // What of the edge is beside the segment, as shares of the edge.
         const double length = length_of(side);
         const auto [first, last] = std::minmax({-p_along / run, (axis.length - p_along) / run});
         const double from = std::max(0.0, first), to = std::min(1.0, last);
-        if (!(from < to)) return;
+        if (!(from < to)) return true;
         const auto across_at = [&](double share) {
             return std::fabs(p_across + (q_across - p_across) * share);
         };
-        if (across_at(from) > reach_ || across_at(to) > reach_) return;
+        if (across_at(from) > reach_ || across_at(to) > reach_) return true;
         const auto [low, high] = std::minmax({p_along + run * from, p_along + run * to});
+        constexpr std::uint64_t kVisitsOfAMatch = 8;  // it takes more memory than a triangle seen
+        if (!spend(kVisitsOfAMatch)) return false;
         matches_.push_back(
             {side, {from * length, to * length}, {axis.before + low, axis.before + high}});
+        return true;
+    }
+
+    bool spend(std::uint64_t visits) {
+        if (refused_) return false;
+        if (visits > budget_.visits) {
+            refused_ = Error{ErrorCode::CrossingBudget,
+                             "the line has more edges within reach than allowed; allow less reach, "
+                             "or send it in parts",
+                             {}};
+            return false;
+        }
+        budget_.visits -= visits;
+        constexpr std::uint64_t kAskEvery = 4096;
+        if (asked_++ % kAskEvery == 0 && budget_.cancelled && budget_.cancelled())
+            refused_ = Error{ErrorCode::Cancelled, "the request was cancelled", {}};
+        return !refused_;
     }
 
     const Tin& tin_;
     const double reach_;
+    LockBudget& budget_;
+    std::uint64_t asked_ = 0;
+    std::optional<Error> refused_;
     std::vector<Match> matches_;
 };
 
@@ -239,7 +269,8 @@ Errors check_line(const Path& line, const std::vector<Axis>& axes) {
 
 }  // namespace
 
-Result<LockReport> lock_along(Tin& tin, const Path& line, double reach, bool locked, Undo* undo) {
+Result<LockReport> lock_along(Tin& tin, const Path& line, double reach, bool locked, Undo* undo,
+                              LockBudget* budget) {
     const std::vector<Axis> axes = axes_of(line);
     if (Errors errors = check_line(line, axes); !errors.empty()) return errors;
     const Bounds& box = tin.bounds();
@@ -247,9 +278,10 @@ Result<LockReport> lock_along(Tin& tin, const Path& line, double reach, bool loc
         {std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.max.x), std::fabs(box.max.y)});
     reach = std::min(std::max(4.0 * ulp(largest), reach), kCoordinateLimit);
 
-    LineSearch search(tin, reach);
+    LockBudget endless;
+    LineSearch search(tin, reach, budget != nullptr ? *budget : endless);
     for (const Axis& axis : axes)
-        search.search(axis);
+        if (!search.search(axis)) return *search.refused();
     auto [edges, on_line] = search.covered();
     if (edges.empty()) {
         ErrorPlace place;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/integrate/shape.hpp"
@@ -21,16 +23,23 @@ struct LockReport {
     std::vector<std::vector<Point2>> without_edge;
 };
 
+/// What locking along lines may still cost. Each line takes its part of it.
+struct LockBudget {
+    std::uint64_t visits = UINT64_MAX;          ///< of triangles; what lies along counts more
+    std::function<bool()> cancelled = nullptr;  ///< asked every few thousand visits
+};
+
 /// Locks the mesh's edges along a line, or unlocks them: all edges that are within `reach` of it
 /// from end to end (at least 4 ulp of the mesh's largest coordinate) and run more along it than
 /// across it. Locked edges are swapped in no mode; what crosses them may split them, and both
 /// halves stay locked. Adds no vertex and moves none. Where `undo` is given it takes what
 /// `take_back` needs.
-/// Errors: coordinates out of range; fewer than two positions; no edge along the line at all. The
-/// mesh is then as it was.
+/// Errors: coordinates out of range; fewer than two positions; no edge along the line at all; the
+/// budget, where one is given, used up or cancelled. The mesh is then as it was.
 /// Not promised: parts of the mesh narrower than the reach that only the reach touches.
-/// Cost: the triangles within reach of the line, once for each of its segments.
+/// Cost: the triangles within reach of the line, once for each of its segments. Memory: a bit for
+/// each of these in pages, and some words for each edge along a segment.
 Result<LockReport> lock_along(Tin& tin, const Path& line, double reach, bool locked,
-                              Undo* undo = nullptr);
+                              Undo* undo = nullptr, LockBudget* budget = nullptr);
 
 }  // namespace tinsmith::core

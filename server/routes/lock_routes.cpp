@@ -112,8 +112,9 @@ Response set_locks(Services& services, const Request& request, const std::string
     const bool as_delta = edit.want_delta;
     const auto memory = require_memory(services, request, dry_run ? session->mesh_bytes() : 0);
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
-    const auto outcome =
-        session->set_locks(std::move(edit), rerun_limits(services.limits, services.stopping));
+    RunLimits limits = rerun_limits(services.limits, services.stopping);
+    limits.max_crossings = services.limits.max_crossings;
+    const auto outcome = session->set_locks(std::move(edit), std::move(limits));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, *session, mismatch->current);
     }

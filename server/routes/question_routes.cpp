@@ -56,19 +56,6 @@ double read_coordinate(const Request& request, const std::string& name, api::Fau
     return 0.0;
 }
 
-/// What the core refused, told at places of the body.
-Response refuse_errors(const Request& request, const core::Errors& errors,
-                       const std::vector<api::RequestedShape>& shapes) {
-    auto faults = faults_of(errors, shapes);
-    api::Problem problem = api::problem_of_errors(errors, std::move(faults));
-    if (problem.type == api::ProblemType::Stopped) {
-        problem.detail =
-            "The question took longer than this server allows, or the server is stopping. Ask "
-            "for smaller parts, or try again.";
-    }
-    return refuse(request, problem);
-}
-
 /// The other session of a volume request, null where it names none.
 Step<std::shared_ptr<Session>> require_other(Services& services, const Request& request,
                                              const Session& session,
@@ -155,7 +142,7 @@ Response ask_profile(Services& services, const Request& request, const PathArgum
                    {std::min(services.limits.max_crossings, services.limits.max_profile_crossings),
                     deadline(services.limits, services.stopping)});
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
-        return refuse_errors(request, *errors, line->shapes);
+        return refuse_question(request, *errors, line->shapes);
     }
     const auto& [profile, version] = std::get<ProfileAnswer>(outcome);
     return answer(session, version, api::write_profile(head_of(session, version), profile));
@@ -188,7 +175,7 @@ Response ask_volume(Services& services, const Request& request, const PathArgume
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
         std::vector<api::RequestedShape> shapes;
         if (asked->shape) shapes.push_back(*std::move(asked->shape));
-        return refuse_errors(request, *errors, shapes);
+        return refuse_question(request, *errors, shapes);
     }
     const VolumeAnswer& volume = std::get<VolumeAnswer>(outcome);
     return answer(

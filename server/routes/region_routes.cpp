@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The triangles and edges inside polygons: what selects them in a client's own mesh.
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "server/regions.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -15,8 +18,9 @@ namespace {
 constexpr std::string_view kCursorKind = "region";
 constexpr std::string_view kSuffix = "-regions";
 
+/// What a session has under its lock of the regions asked for.
 struct RegionsCopy {
-    std::vector<api::RegionView> regions;
+    std::optional<RegionGround> ground;  ///< none where no region is asked for
     std::uint64_t version = 0;
     bool more = false;     ///< others follow these
     bool is_there = true;  ///< the polygon asked for, inside or not
@@ -35,7 +39,7 @@ RegionsCopy regions_after(const Session& session, std::uint64_t number, std::siz
                 if (copy.more) break;
                 wanted.push_back(i);
             }
-            copy.regions = find_regions(tin, polygons, wanted);
+            if (!wanted.empty()) copy.ground = region_ground(tin, polygons, wanted);
             return copy;
         });
 }
@@ -50,10 +54,24 @@ RegionsCopy region_of(const Session& session, const std::string& id) {
                 ++i;
             copy.is_there = i < polygons.size();
             if (copy.is_there && polygons[i].has_inside()) {
-                copy.regions = find_regions(tin, polygons, {&i, 1});
+                copy.ground = region_ground(tin, polygons, {&i, 1});
             }
             return copy;
         });
+}
+
+/// Memory for the copy and what is noted of it; or 507.
+Step<BorrowedMemory> require_room(Services& services, const Request& request,
+                                  const Session& session) {
+    const std::size_t bytes =
+        session.look([](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t) {
+            return region_bytes(tin, polygons);
+        });
+    return require_memory(services, request, session.mesh_bytes() + bytes);
+}
+
+RegionLimits limits_of(const Services& services) {
+    return {services.limits.max_crossings, deadline(services.limits, services.stopping)};
 }
 
 }  // namespace
@@ -66,12 +84,21 @@ Response list_regions(Services& services, const Request& request, const PathArgu
     const Session& session = *std::get<0>(found);
     const std::uint64_t now = session.view().version;
     if (auto answer = answer_to_conditions(request, session, now, kSuffix)) return *answer;
+    const RegionLimits limits = limits_of(services);
+    const auto memory = require_room(services, request, session);
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     const auto& [limit, after] = std::get<0>(page);
     const RegionsCopy copy = regions_after(session, polygon_number(after), limit);
-    Response response = ok(kJson, api::write_regions(session.facts().id, copy.version,
-                                                     session.facts().unit, copy.regions));
+    std::vector<api::RegionView> regions;
+    if (copy.ground) {
+        auto told = find_regions(*copy.ground, limits);
+        if (!told) return refuse_question(request, told.errors());
+        regions = std::move(*told);
+    }
+    Response response = ok(
+        kJson, api::write_regions(session.facts().id, copy.version, session.facts().unit, regions));
     if (copy.more) {
-        response.with("Link", next_link(request, kCursorKind, limit, copy.regions.back().polygon));
+        response.with("Link", next_link(request, kCursorKind, limit, regions.back().polygon));
     }
     return response.with("ETag", etag_of(session, copy.version, kSuffix));
 }
@@ -80,17 +107,22 @@ Response get_region(Services& services, const Request& request, const PathArgume
     const auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
+    const RegionLimits limits = limits_of(services);
+    const auto memory = require_room(services, request, session);
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     const RegionsCopy copy = region_of(session, arguments[1]);
     if (!copy.is_there) return no_such_polygon(request, session, arguments[1]);
-    if (copy.regions.empty()) {
+    if (!copy.ground) {
         return refuse(request, api::ProblemType::NoSuchPolygon,
                       "\"" + arguments[1].substr(0, 64) +
                           "\" is a line or a point and has no inside. GET /v1/sessions/" +
                           session.facts().id + "/regions lists those that have one.");
     }
     if (auto answer = answer_to_conditions(request, session, copy.version, kSuffix)) return *answer;
+    const auto told = find_regions(*copy.ground, limits);
+    if (!told) return refuse_question(request, told.errors());
     return ok(kJson, api::write_region(session.facts().id, copy.version, session.facts().unit,
-                                       copy.regions.front()))
+                                       told->front()))
         .with("ETag", etag_of(session, copy.version, kSuffix));
 }
 

@@ -29,11 +29,11 @@ bool prefers_a_job(const Request& request) {
 
 }  // namespace
 
-Handler deferrable(Services& services, Handler handler) {
-    return [&services, handler = std::move(handler)](const Request& request,
-                                                     const PathArguments& arguments) {
+Handler deferrable(Services& services, Handler handler, Names names) {
+    return [&services, names, handler = std::move(handler)](const Request& request,
+                                                            const PathArguments& arguments) {
         const bool is_nowhere =
-            request.method == "POST" && !arguments.empty() && !services.sessions.find(arguments[0]);
+            names == Names::Session && !arguments.empty() && !services.sessions.find(arguments[0]);
         if (is_nowhere || !prefers_a_job(request)) return handler(request, arguments);
         const auto job = services.jobs.add(request, [handler, arguments](const Request& asked) {
             return answer_safely(asked, [&] { return handler(asked, arguments); });

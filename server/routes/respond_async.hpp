@@ -6,12 +6,19 @@
 
 namespace tinsmith::server {
 
+/// What the path of a route names first, if it names anything.
+enum class Names {
+    Session,     ///< one that must be there
+    NewSession,  ///< one that the request may make
+};
+
 /// The handler of a request that may take long, made to answer 202 with a job where the client says
 /// Prefer: respond-async (RFC 7240).
 ///
 /// Laws: the handler is called once, on another thread, with the same request; what it answers is
-/// the job's result. A path that names no session is answered at once, and so is a request without
-/// the preference. No room for a job: 503 with Retry-After, and nothing was begun.
-Handler deferrable(Services& services, Handler handler);
+/// the job's result. A path that names no session is answered at once whatever the method, and so
+/// is a request without the preference. No room for a job: 503 with Retry-After, and nothing was
+/// begun.
+Handler deferrable(Services& services, Handler handler, Names names = Names::Session);
 
 }  // namespace tinsmith::server

@@ -8,6 +8,7 @@
 #include "api/crs.hpp"
 #include "api/media_type.hpp"
 #include "api/problem.hpp"
+#include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 
 namespace tinsmith::server {
@@ -217,6 +218,17 @@ std::optional<Response> refusal_of_version(const Request& request, const Session
         return version_ahead(request, *ahead);
     }
     return std::nullopt;
+}
+
+Response refuse_question(const Request& request, const core::Errors& errors,
+                         const std::vector<api::RequestedShape>& shapes) {
+    api::Problem problem = api::problem_of_errors(errors, faults_of(errors, shapes));
+    if (problem.type == api::ProblemType::Stopped) {
+        problem.detail =
+            "The question took longer than this server allows, or the server is stopping. Ask "
+            "for smaller parts, or try again.";
+    }
+    return refuse(request, problem);
 }
 
 Step<BorrowedMemory> require_memory(Services& services, const Request& request, std::size_t bytes) {

@@ -84,6 +84,10 @@ std::optional<Response> refusal_of_version(const Request& request, const Session
 Response refuse_version(const Request& request, const Session& session,
                         const VersionOutcome& outcome);
 
+/// What the core refused of a question; faults are told at places of the body, if there is one.
+Response refuse_question(const Request& request, const core::Errors& errors,
+                         const std::vector<api::RequestedShape>& shapes = {});
+
 /// The shortest text that reads back to the same number.
 std::string text_of(double value);
 

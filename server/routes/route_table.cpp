@@ -61,6 +61,10 @@ std::vector<Route> make_routes(Services& services) {
     const auto long_json = [&services, to](Function function) {
         return as_json(deferrable(services, to(function)));
     };
+    // Makes the session that its path names.
+    const auto long_making = [&services, to](Function function) {
+        return as_json(deferrable(services, to(function), Names::NewSession));
+    };
     const auto json = [to](Function function) { return as_json(to(function)); };
     const auto mesh = api::mesh_option_names();
     const auto polygons = api::polygon_option_names();
@@ -79,7 +83,7 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
         {"POST", "/v1/sessions", {}, as_json(change(create_session))},
         {"GET", "/v1/sessions/{id}", {}, json(get_session)},
-        {"PUT", "/v1/sessions/{id}", {}, long_json(put_session)},
+        {"PUT", "/v1/sessions/{id}", {}, long_making(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
         {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},

@@ -258,6 +258,34 @@ TEST(LockedEdges, AreSplitByWhatCrossesThemAndBothHalvesStayLocked) {
     EXPECT_EQ(locked_edges(tin), 5u);
 }
 
+TEST(LockAlong, StopsWhereItsBudgetEnds) {
+    Tin tin = built(grid(20, 20));
+    const Tin before = tin;
+    const Path line = path({{0, 0}, {20, 0}, {20, 20}, {0, 20}});
+    LockBudget roomy{100'000, {}};
+    EXPECT_TRUE(lock_along(tin, line, 100.0, true, nullptr, &roomy).ok());
+    EXPECT_LE(roomy.visits, 100'000u - 3u * 800u) << "each segment sees all triangles";
+    Tin other = before;
+    LockBudget tight{3 * 800, {}};
+    const auto refused = lock_along(other, line, 100.0, true, nullptr, &tight);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.errors()[0].code, ErrorCode::CrossingBudget);
+    EXPECT_TRUE(test::same_slots(other, before));
+}
+
+TEST(LockAlong, StopsAmidALineWhenToldTo) {
+    Tin tin = built(grid(60, 60));
+    const Tin before = tin;
+    int asked = 0;
+    LockBudget budget{UINT64_MAX, [&asked] { return ++asked == 3; }};
+    const auto stopped =
+        lock_along(tin, path({{0, 0}, {60, 0}, {60, 60}}), 1000.0, true, nullptr, &budget);
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.errors()[0].code, ErrorCode::Cancelled);
+    EXPECT_EQ(asked, 3);
+    EXPECT_TRUE(test::same_slots(tin, before));
+}
+
 TEST(LockMarks, AreOnBothHalvesOfASplitEdge) {
     Tin tin = built(grid(2, 2));
     {

@@ -122,6 +122,8 @@ TEST_F(JobRoutes, TakePreferencesAsTheyAreWritten) {
     for (const char* text : {"", "wait=10", "respond-asynchronously", "return=minimal"})
         EXPECT_EQ(ask("POST", session + "/undo", {{"prefer", text}}).status, 409) << text;
     EXPECT_EQ(ask("POST", "/v1/sessions/none/undo", {kAsync}).status, 404);
+    for (const char* method : {"PUT", "DELETE"})
+        EXPECT_EQ(told(ask(method, "/v1/sessions/none/locks", {kAsync})), "no-such-session");
     EXPECT_EQ(
         ask("PUT", "/v1/sessions/mine", {kAsync, {"content-type", "application/json"}}, kSquare)
             .status,

@@ -177,5 +177,28 @@ TEST_F(LockRoutes, ComeInPages) {
     EXPECT_EQ(pages, all);
 }
 
+class FewVisits : public Handlers {
+  protected:
+    static Limits few_visits() {
+        Limits limits = few_sessions();
+        limits.max_crossings = 20;
+        return limits;
+    }
+    Services tight{few_visits()};
+};
+
+TEST_F(FewVisits, EndALockWithMuchInReach) {
+    router = Router(make_routes(tight));
+    const std::string session = make_session();
+    const std::vector<NameValue> json_body{{"content-type", "application/json"}};
+    EXPECT_EQ(ask("PUT", session + "/locks", json_body, kDiagonal).status, 200);
+    const std::string wide = R"({"type": "LineString",
+        "coordinates": [[0,0],[10,10],[0,0],[10,10],[0,0],[10,10],[0,0],[10,10]]})";
+    const Response refused = ask("PUT", session + "/locks?snap=1000", json_body, wide);
+    EXPECT_EQ(refused.status, 422) << refused.body;
+    EXPECT_EQ(told(refused), "CROSSING_BUDGET");
+    EXPECT_EQ(version_of(session), 2);
+}
+
 }  // namespace
 }  // namespace tinsmith::server

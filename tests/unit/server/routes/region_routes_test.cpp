@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "server/regions.hpp"
 #include "tests/unit/server/handlers.hpp"
 
 namespace tinsmith::server {
@@ -144,6 +145,62 @@ TEST_F(RegionRoutes, RefuseWhatHasNone) {
     EXPECT_EQ(told(ask("GET", session + "/regions/p1")), "no-such-polygon");
     EXPECT_EQ(told(ask("GET", session + "/regions/p2")), "no-such-polygon");
     EXPECT_EQ(told(ask("GET", session + "/regions?cursor=x")), "INVALID_PARAMETER");
+}
+
+TEST_F(RegionRoutes, TellNestedOnesInOrder) {
+    for (const char* ring :
+         {"[[[1,1],[9,1],[9,9],[1,9],[1,1]]]", "[[[2,2],[8,2],[8,8],[2,8],[2,2]]]",
+          "[[[3,3],[7,3],[7,7],[3,7],[3,3]]]"})
+        cut(ring);
+    const json shared = region("p2")["shared"];
+    ASSERT_EQ(shared.size(), 2U);
+    EXPECT_EQ(shared[0]["polygons"], json::parse(R"(["p1"])"));
+    EXPECT_EQ(shared[1]["polygons"], json::parse(R"(["p1","p3"])"));
+    EXPECT_NEAR(area_of(mesh(), shared[1]["triangles"]), 16.0, 1e-12);
+    EXPECT_EQ(region("p2")["within"], json::parse(R"(["p1"])"));
+    EXPECT_EQ(region("p3")["within"], json::parse(R"(["p1","p2"])"));
+}
+
+class CostlyRegions : public RegionRoutes {
+  protected:
+    void SetUp() override {
+        cut("[[[1,1],[9,1],[9,9],[1,9],[1,1]]]");
+        cut("[[[2,2],[8,2],[8,8],[2,8],[2,2]]]");
+    }
+    /// What finding both regions comes to under these limits.
+    core::Result<std::vector<api::RegionView>> find(const RegionLimits& limits) {
+        const auto found = services.sessions.find(session.substr(13));
+        const RegionGround ground = found->look(
+            [](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t) {
+                const std::vector<std::size_t> both{0, 1};
+                return region_ground(tin, polygons, both);
+            });
+        return find_regions(ground, limits);
+    }
+};
+
+TEST_F(CostlyRegions, AreRefused) {
+    EXPECT_TRUE(find({}).ok());
+    EXPECT_TRUE(find({1000, {}}).ok());
+    const auto refused = find({30, {}});
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.errors()[0].code, core::ErrorCode::CrossingBudget);
+}
+
+TEST_F(CostlyRegions, StopBetweenPolygons) {
+    int asked = 0;
+    const auto stopped = find({UINT64_MAX, [&asked] { return ++asked == 2; }});
+    ASSERT_FALSE(stopped.ok());
+    EXPECT_EQ(stopped.errors()[0].code, core::ErrorCode::Cancelled);
+}
+
+TEST_F(CostlyRegions, EndWithTheService) {
+    services.stopping = true;
+    for (const char* path : {"/regions", "/regions/p1"}) {
+        const Response answer = ask("GET", session + path);
+        EXPECT_EQ(answer.status, 503) << answer.body;
+        EXPECT_EQ(told(answer), "CANCELLED");
+    }
 }
 
 }  // namespace
