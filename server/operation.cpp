@@ -54,17 +54,17 @@ std::size_t bytes_of(const core::Undo& undo, const SlotChanges& written) {
 /// Takes an operation back unless told to keep it.
 class Guard {
   public:
-    Guard(core::Tin& tin, const core::Undo& undo) : tin_(tin), undo_(undo) {}
+    Guard(core::Tin& tin, core::Undo& undo) : tin_(tin), undo_(undo) {}
     Guard(const Guard&) = delete;
     Guard& operator=(const Guard&) = delete;
     ~Guard() {
-        if (!kept_) core::take_back(tin_, undo_);
+        if (!kept_) core::take_back(tin_, std::move(undo_));
     }
     void keep() { kept_ = true; }
 
   private:
     core::Tin& tin_;
-    const core::Undo& undo_;
+    core::Undo& undo_;
     bool kept_ = false;
 };
 

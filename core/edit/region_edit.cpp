@@ -38,7 +38,7 @@ class Work {
     }
     Work(const Work&) = delete;
     Work& operator=(const Work&) = delete;
-    ~Work() { take_back(tin_, done_); }
+    ~Work() { take_back(tin_, std::move(done_)); }
 
     Result<EditReport> run(const RegionEdit& edit) {
         std::optional<Errors> errors =
