@@ -88,6 +88,9 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     if (!asked) {
         return refuse(request, api::problem_of_faults(asked.kind(), std::move(asked.faults())));
     }
+    const auto memory =
+        require_memory(services, request, wishes.dry_run ? session.mesh_bytes() : 0);
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
 
     auto made = make_edit(session, *asked, services.limits, services.stopping);
     if (const auto* no = std::get_if<NoEdit>(&made))

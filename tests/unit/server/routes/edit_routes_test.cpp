@@ -185,6 +185,16 @@ TEST_F(EditRoutes, EndAtTheDeadlineWhileTheirRingIsDrawn) {
     }
 }
 
+TEST_F(EditRoutes, ADryRunAsksForTheMemoryOfItsCopy) {
+    const json body{{"operation", "offset"}, {"polygon", "p1"}, {"by", 1}};
+    auto all = services.sessions.borrow(services.limits.max_memory_bytes -
+                                        services.sessions.memory_bytes());
+    ASSERT_TRUE(all);
+    EXPECT_EQ(told(edit(body, {}, "?dry_run=true")), "out-of-memory");
+    all.reset();
+    EXPECT_EQ(edit(body, {}, "?dry_run=true").status, 200);
+}
+
 TEST_F(EditRoutes, GoWithTheirPolygonOrKeepIt) {
     const json before = mesh();
     post(session + "/polygons",
