@@ -161,8 +161,8 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const EditOperation& edit,
                            {}};
     }
     const core::ShapeReport& own = polygon->own_report();
-    const core::EditLimits budgets{
-        limits.max_crossings, limits.max_new_triangles, {}, limits.cancelled, limits.clock_ms};
+    const core::EditLimits budgets{limits.max_crossings, limits.max_new_triangles, {},
+                                   limits.cancelled,     limits.clock_ms,          limits.progress};
     const auto kept_answer = std::make_shared<api::EditAnswer>(edit.asked);
     auto report = core::edit_region(tin, {polygon->outline(), own.chains, own.outside},
                                     polygon->request.winding, edit.edit, budgets, &applied->undo);

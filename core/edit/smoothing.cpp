@@ -94,11 +94,13 @@ class Smoothing {
 
 std::optional<std::vector<VertexMove>> smoothed(const Tin& tin, std::span<const Moving> moving,
                                                 std::uint32_t passes,
-                                                const std::function<bool()>& cancelled) {
+                                                const std::function<bool()>& cancelled,
+                                                const std::function<void(double)>& progress) {
     Smoothing smoothing(tin, moving);
     for (std::uint32_t i = 0; i < passes; ++i) {
         if (cancelled && cancelled()) return std::nullopt;
         smoothing.pass();
+        if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(passes));
     }
     return smoothing.moves();
 }

@@ -3,6 +3,7 @@
 
 #include "server/edit_making.hpp"
 #include "server/reply.hpp"
+#include "server/work.hpp"
 #include "tests/unit/server/handlers.hpp"
 
 namespace tinsmith::server {
@@ -193,6 +194,17 @@ TEST_F(EditRoutes, ADryRunAsksForTheMemoryOfItsCopy) {
     EXPECT_EQ(told(edit(body, {}, "?dry_run=true")), "out-of-memory");
     all.reset();
     EXPECT_EQ(edit(body, {}, "?dry_run=true").status, 200);
+}
+
+TEST_F(EditRoutes, ShowRealProgress) {
+    for (const char* query : {"", "?dry_run=true"}) {
+        std::vector<double> told_of;
+        Work work([&told_of](double progress) { told_of.push_back(progress); });
+        const WorkScope scope(work);
+        const json body{{"operation", "smooth"}, {"polygon", "p1"}, {"passes", 50}};
+        EXPECT_EQ(edit(body, {}, query).status, 200);
+        EXPECT_GT(told_of.size(), 20U);
+    }
 }
 
 TEST_F(EditRoutes, GoWithTheirPolygonOrKeepIt) {
