@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -24,6 +25,38 @@ constexpr int kHalvings = 12;
 constexpr int kMostAsked = 32;
 /// So many ulps of the largest coordinate lines must be apart, to be two in a mesh.
 constexpr double kLeastUlps = 256.0;
+
+/// What this thread asks whether to stop; null outside of this file's work.
+thread_local const std::function<bool()>* asked_to_stop = nullptr;
+
+bool is_told_to_stop() {
+    return asked_to_stop != nullptr && (*asked_to_stop)();
+}
+
+struct Stopped : std::exception {
+    const char* what() const noexcept override { return "stopped"; }
+};
+
+/// The library calls this wherever it may be interrupted, on any thread, for whoever uses it: on a
+/// thread that does not work here it does nothing. It throws, as the library itself does there, and
+/// the C functions answer null to any exception. GEOS_interruptRequest would not do: its flag is
+/// one for all threads, and would end another's work.
+void interrupt_if_told() {
+    if (is_told_to_stop()) throw Stopped();
+}
+
+/// There is one callback for the whole process, and no lock for it: set before there are threads.
+[[maybe_unused]] GEOSInterruptCallback* const kCallbackBefore =
+    GEOS_interruptRegisterCallback(&interrupt_if_told);
+
+/// While it lives, the library asks `stop` on this thread.
+class StopScope {
+  public:
+    explicit StopScope(const std::function<bool()>& stop) { asked_to_stop = &stop; }
+    StopScope(const StopScope&) = delete;
+    StopScope& operator=(const StopScope&) = delete;
+    ~StopScope() { asked_to_stop = nullptr; }
+};
 
 /// The library's state of one call; it says by null pointers what failed.
 class Geos {
@@ -93,14 +126,14 @@ class Geos {
 
     /// About the largest distance at which a ring inside the polygon is left. Requires: none is
     /// left at `most`. By halving: the library's own search for the largest circle takes for ever
-    /// in slivers.
+    /// in slivers. Anything where it is told to stop.
     double bearable(const GEOSGeometry* polygon, double most) const {
         double area = 0.0, length = 0.0;
         GEOSArea_r(handle_, polygon, &area);
         GEOSLength_r(handle_, polygon, &length);
         // A circle of this radius always fits.
         double low = length > 0.0 ? std::min(area / length, most) : 0.0, high = most;
-        for (int i = 0; i < kHalvings; ++i) {
+        for (int i = 0; i < kHalvings && !is_told_to_stop(); ++i) {
             const double middle = low + (high - low) / 2.0;
             const Geometry ring = buffer(polygon, -middle);
             const bool is_left = ring && GEOSisEmpty_r(handle_, ring.get()) == 0;
@@ -161,9 +194,9 @@ double somewhat_less(double x) {
     return std::floor(x / unit * (1.0 - 1e-6)) * unit;
 }
 
-/// Above 0: outside. `origin` keeps digits where coordinates are large.
-std::variant<RingOffset, NoRing> offset(std::span<const core::Triangle2> triangles,
-                                        double distance) {
+/// Above 0: outside. `origin` keeps digits where coordinates are large. Whatever failed where it is
+/// told to stop.
+std::variant<RingOffset, NoRing> draw(std::span<const core::Triangle2> triangles, double distance) {
     using Reason = NoRing::Reason;
     if (triangles.empty()) return NoRing{Reason::Empty, 0.0};
     const double least =
@@ -182,6 +215,7 @@ std::variant<RingOffset, NoRing> offset(std::span<const core::Triangle2> triangl
     double bears = HUGE_VAL;
     int asked = 0;
     for (const GEOSGeometry* part : geos.parts_of(area.get())) {
+        if (is_told_to_stop()) return NoRing{};
         const Geos::Geometry ring = geos.buffer(part, distance);
         const std::size_t before = made.ring.paths.size();
         if (!ring || !geos.add_rings(ring.get(), origin, made.ring)) return NoRing{};
@@ -192,16 +226,27 @@ std::variant<RingOffset, NoRing> offset(std::span<const core::Triangle2> triangl
     return NoRing{Reason::TooThin, bears > 0.0 ? somewhat_less(bears) : 0.0};
 }
 
+std::variant<RingOffset, NoRing> offset(std::span<const core::Triangle2> triangles, double distance,
+                                        const std::function<bool()>& stop) {
+    // Once told to stop it stays so, whatever is asked later.
+    bool is_stopped = false;
+    const std::function<bool()> ask = [&] { return is_stopped = is_stopped || (stop && stop()); };
+    const StopScope scope(ask);
+    auto made = draw(triangles, distance);
+    if (is_stopped) return NoRing{NoRing::Reason::Stopped, 0.0};
+    return made;
+}
+
 }  // namespace
 
-std::variant<RingOffset, NoRing> ring_inside(std::span<const core::Triangle2> area,
-                                             double distance) {
-    return offset(area, -distance);
+std::variant<RingOffset, NoRing> ring_inside(std::span<const core::Triangle2> area, double distance,
+                                             const std::function<bool()>& stop) {
+    return offset(area, -distance, stop);
 }
 
 std::variant<RingOffset, NoRing> ring_outside(std::span<const core::Triangle2> area,
-                                              double distance) {
-    return offset(area, distance);
+                                              double distance, const std::function<bool()>& stop) {
+    return offset(area, distance, stop);
 }
 
 }  // namespace tinsmith::api

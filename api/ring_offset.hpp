@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <span>
 #include <variant>
 
@@ -22,6 +23,7 @@ struct NoRing {
         Empty,     ///< the area has no inside
         TooThin,   ///< a part of the area would vanish: `limit` is what it bears, somewhat less
         TooSmall,  ///< coordinates of this size do not tell both lines apart: `limit` is the least
+        Stopped,   ///< it was told to stop
         Failed,    ///< the library gave up, for want of memory or by a defect
     };
     Reason reason = Reason::Failed;
@@ -33,14 +35,18 @@ struct NoRing {
 /// rings, and one that is so everywhere is a fault.
 /// Requires here and below: triangles fill the area and share whole edges alone
 /// (`core::triangles_inside`); the distance is above 0.
+/// `stop`, which may be empty, is asked now and then, on the caller's thread; true ends the work.
+/// Cost: of the library, and for lines that lie close together it grows with the square of their
+/// points: 10,000 may take a minute. So give `stop`.
 /// Not promised: the same bytes by another version of the library. So rings are kept with what was
 /// made of them.
-std::variant<RingOffset, NoRing> ring_inside(std::span<const core::Triangle2> area,
-                                             double distance);
+std::variant<RingOffset, NoRing> ring_inside(std::span<const core::Triangle2> area, double distance,
+                                             const std::function<bool()>& stop = {});
 
 /// The ring at the distance outside the border, corners rounded by arcs of eight segments to a
 /// quarter. Holes that are narrower than twice the distance close.
 std::variant<RingOffset, NoRing> ring_outside(std::span<const core::Triangle2> area,
-                                              double distance);
+                                              double distance,
+                                              const std::function<bool()>& stop = {});
 
 }  // namespace tinsmith::api

@@ -65,6 +65,9 @@ NoEdit no_ring(const api::EditRequest& request, const api::NoRing& no) {
                                " is lost in the rounding of coordinates as large as these: give "
                                "at least " +
                                    text_of(no.limit) + ".");
+        case api::NoRing::Reason::Stopped:
+            return core::Errors{core::Error{
+                core::ErrorCode::Cancelled, "the request was cancelled; nothing was changed", {}}};
         case api::NoRing::Reason::Failed:
             break;
     }
@@ -85,7 +88,8 @@ std::variant<core::Strip, NoEdit> make_strip(const Drawn& polygon, const api::Ed
     }
     const auto area = core::triangles_inside(polygon.shape, polygon.winding, limits);
     if (!area) return NoEdit(area.errors());
-    auto made = request.taper ? api::ring_outside(*area, width) : api::ring_inside(*area, width);
+    auto made = request.taper ? api::ring_outside(*area, width, limits.cancelled)
+                              : api::ring_inside(*area, width, limits.cancelled);
     if (const auto* no = std::get_if<api::NoRing>(&made)) return no_ring(request, *no);
     auto& [ring, border] = std::get<api::RingOffset>(made);
     if (request.taper)

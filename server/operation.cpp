@@ -54,17 +54,17 @@ std::size_t bytes_of(const core::Undo& undo, const SlotChanges& written) {
 /// Takes an operation back unless told to keep it.
 class Guard {
   public:
-    Guard(core::Tin& tin, const core::Undo& undo) : tin_(tin), undo_(undo) {}
+    Guard(core::Tin& tin, core::Undo& undo) : tin_(tin), undo_(undo) {}
     Guard(const Guard&) = delete;
     Guard& operator=(const Guard&) = delete;
     ~Guard() {
-        if (!kept_) core::take_back(tin_, undo_);
+        if (!kept_) core::take_back(tin_, std::move(undo_));
     }
     void keep() { kept_ = true; }
 
   private:
     core::Tin& tin_;
-    const core::Undo& undo_;
+    core::Undo& undo_;
     bool kept_ = false;
 };
 
@@ -168,8 +168,8 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const EditOperation& edit,
                            {}};
     }
     const core::ShapeReport& own = polygon->own_report();
-    const core::EditLimits budgets{
-        limits.max_crossings, limits.max_new_triangles, {}, limits.cancelled, limits.clock_ms};
+    const core::EditLimits budgets{limits.max_crossings, limits.max_new_triangles, {},
+                                   limits.cancelled,     limits.clock_ms,          limits.progress};
     const auto kept_answer = std::make_shared<api::EditAnswer>(edit.asked);
     auto report = core::edit_region(tin, {polygon->outline(), own.chains, own.outside},
                                     polygon->request.winding, edit.edit, budgets, &applied->undo);

@@ -55,9 +55,14 @@ EditOutcome Session::edit_dry(const PendingEdit& edit) const {
     core::Tin trial = tin_;
     lock.unlock();
     const RunLimits limits = limits_of(edit, trial);
-    auto report = core::edit_region(
-        trial, {shape, own.chains, own.outside}, winding, edit.operation.edit,
-        {limits.max_crossings, limits.max_new_triangles, {}, limits.cancelled, limits.clock_ms});
+    auto report =
+        core::edit_region(trial, {shape, own.chains, own.outside}, winding, edit.operation.edit,
+                          {limits.max_crossings,
+                           limits.max_new_triangles,
+                           {},
+                           limits.cancelled,
+                           limits.clock_ms,
+                           limits.progress});
     if (!report) return report.errors();
     auto answer = std::make_shared<api::EditAnswer>(edit.operation.asked);
     report->apply_ms += answer->report.apply_ms;

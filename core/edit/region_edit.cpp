@@ -19,6 +19,9 @@ namespace tinsmith::core {
 
 namespace {
 
+/// Of an edit with a ring: the share of the work that integrating it is, about.
+constexpr double kShareOfRing = 0.7;
+
 Error nothing_inside() {
     return {ErrorCode::NothingInside,
             "nothing of the polygon's inside lies on the mesh; nothing was changed",
@@ -38,7 +41,7 @@ class Work {
     }
     Work(const Work&) = delete;
     Work& operator=(const Work&) = delete;
-    ~Work() { take_back(tin_, done_); }
+    ~Work() { take_back(tin_, std::move(done_)); }
 
     Result<EditReport> run(const RegionEdit& edit) {
         std::optional<Errors> errors =
@@ -64,7 +67,9 @@ class Work {
         const Strip& strip = *edit.strip;
         ShapeReport ring;
         if (auto errors = integrate(strip, ring)) return errors;
+        tell(kShareOfRing);
         const Region own = own_region();
+        if (is_cancelled()) return Errors{stopped()};
         const Region within =
             find_region(tin_, ConstraintHistory(tin_), {strip.ring, ring.chains, ring.outside},
                         Winding::EvenOdd);
@@ -83,9 +88,10 @@ class Work {
     std::optional<Errors> apply(const SmoothEdit& edit) {
         const Region region = own_region();
         if (region.triangles.empty()) return Errors{nothing_inside()};
+        if (is_cancelled()) return Errors{stopped()};
         const auto moving = moving_vertices(
             tin_, {region.triangles, region.triangles, !edit.moves_border, outline_.chains});
-        const auto moves = smoothed(tin_, moving, edit.passes, limits_.cancelled);
+        const auto moves = smoothed(tin_, moving, edit.passes, limits_.cancelled, limits_.progress);
         if (!moves) return Errors{stopped()};
         return move(*moves);
     }
@@ -111,6 +117,12 @@ class Work {
                                 {}}};
         }
         return remove(gone);
+    }
+
+    bool is_cancelled() const { return limits_.cancelled && limits_.cancelled(); }
+
+    void tell(double share) const {
+        if (limits_.progress) limits_.progress(share);
     }
 
     Region own_region() const {
@@ -148,6 +160,8 @@ class Work {
         options.ids = limits_.ids;
         options.cancelled = limits_.cancelled;
         options.clock_ms = limits_.clock_ms;
+        if (limits_.progress)
+            options.progress = [this](double share) { tell(kShareOfRing * share); };
         auto report = integrate_ring(tin_, ring, options, &done_);
         if (!report) return std::move(report.errors());
         report_.time_ms.locate += report->time_ms.locate;
@@ -161,6 +175,7 @@ class Work {
 
     std::optional<Errors> raise(const ElevationEdit& edit, const Extent& extent) {
         if (extent.outer.empty()) return Errors{nothing_inside()};
+        if (is_cancelled()) return Errors{stopped()};
         std::vector<VertexMove> moves;
         for (const Moving& each : moving_vertices(tin_, extent)) {
             const Point3 old = tin_.vertex(each.vertex).point();
@@ -178,7 +193,7 @@ class Work {
     }
 
     std::optional<Errors> move(std::span<const VertexMove> moves) {
-        if (limits_.cancelled && limits_.cancelled()) return Errors{stopped()};
+        if (is_cancelled()) return Errors{stopped()};
         done_.reserve(done_.size() + 1);  // to keep a record must not fail
         Surgery surgery(tin_);
         if (auto error = move_vertices(surgery, moves, limits_.ids, report_)) return Errors{*error};
@@ -187,7 +202,7 @@ class Work {
     }
 
     std::optional<Errors> remove(std::span<const TriangleId> gone) {
-        if (limits_.cancelled && limits_.cancelled()) return Errors{stopped()};
+        if (is_cancelled()) return Errors{stopped()};
         if (gone.empty()) return std::nullopt;
         NeumaierSum area;
         for (const TriangleId t : gone) {

@@ -63,6 +63,8 @@ struct EditLimits {
     IdLimits ids = {};
     std::function<bool()> cancelled = {};   ///< asked now and then; true stops the work
     std::function<double()> clock_ms = {};  ///< for the report alone, never in a decision
+    /// Told now and then what share is done. It may fall back where a ring is integrated again.
+    std::function<void(double)> progress = {};
 };
 
 /// What an edit did. Volumes and areas are in the session's unit, areas in plan.

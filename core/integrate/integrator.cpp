@@ -36,7 +36,7 @@ class Request {
     }
     Request(const Request&) = delete;
     Request& operator=(const Request&) = delete;
-    ~Request() { take_back(tin_, done_); }
+    ~Request() { take_back(tin_, std::move(done_)); }
 
     Result<Report> run() {
         done_.reserve(2 * shapes_.size());  // once: to keep a record must not fail
@@ -242,6 +242,11 @@ Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const Integrat
 void take_back(Tin& tin, const Undo& undo) {
     for (auto record = undo.rbegin(); record != undo.rend(); ++record)
         Surgery::undo(tin, *record);
+}
+
+void take_back(Tin& tin, Undo&& undo) noexcept {
+    for (auto record = undo.rbegin(); record != undo.rend(); ++record)
+        Surgery::undo(tin, std::move(*record));
 }
 
 }  // namespace tinsmith::core

@@ -23,5 +23,8 @@ Result<Report> integrate(Tin& tin, std::span<const Shape> shapes, const Integrat
 /// Takes a committed operation back, bit for bit, in time proportional to what it changed.
 /// Requires: it is the newest on this mesh that was not taken back.
 void take_back(Tin& tin, const Undo& undo);
+/// The same for records that are not needed any more, in the mesh that they were made in: nothing
+/// is copied, so that it cannot fail for want of memory. Requires: no other holds them.
+void take_back(Tin& tin, Undo&& undo) noexcept;
 
 }  // namespace tinsmith::core

@@ -85,6 +85,9 @@ class Surgery {
     void roll_back();
     /// Takes a committed operation back. Requires: it is the newest on this mesh.
     static void undo(Tin& tin, const UndoRecord& record);
+    /// The same for a record that is not needed any more: nothing is copied, so that it cannot fail
+    /// for want of memory. Requires: the mesh was not copied since; no other holds the record.
+    static void undo(Tin& tin, UndoRecord&& record) noexcept;
 
     /// Bits of `Tin::Triangle::marks` that live only while an operation runs.
     /// A triangle that is new or is in the record.
@@ -98,6 +101,8 @@ class Surgery {
 
   private:
     friend class Removal;
+    static void restore(Tin& tin, const UndoRecord& record, BoundaryIndex&& boundary,
+                        std::vector<TriangleId>&& components);
     Tin::Triangle& edit(TriangleId t);
     Tin::Vertex& edit(VertexId v);
     void link(Side s, Side to);

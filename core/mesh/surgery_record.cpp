@@ -44,7 +44,7 @@ UndoRecord Surgery::commit() {
 }
 
 void Surgery::roll_back() {
-    undo(tin_, record_);
+    undo(tin_, std::move(record_));
     open_ = false;
 }
 
@@ -61,6 +61,20 @@ void Surgery::undo(Tin& tin, const UndoRecord& record) {
         boundary = removal->boundary;
         components = removal->components;
     }
+    restore(tin, record, std::move(boundary), std::move(components));
+}
+
+void Surgery::undo(Tin& tin, UndoRecord&& record) noexcept {
+    if (RemovalRecord* const removal = record.removal.get())
+        restore(tin, record, std::move(removal->boundary), std::move(removal->components));
+    else
+        restore(tin, record, {}, {});
+}
+
+/// Requires: there is room for what the mesh held before.
+void Surgery::restore(Tin& tin, const UndoRecord& record, BoundaryIndex&& boundary,
+                      std::vector<TriangleId>&& components) {
+    const RemovalRecord* const removal = record.removal.get();
     if (removal == nullptr) tin.boundary_.take_back(record.boundary_changes);
     tin.vertices_.resize(record.vertex_count);
     tin.triangles_.resize(record.triangle_count);

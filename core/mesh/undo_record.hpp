@@ -46,7 +46,7 @@ struct UndoRecord {
     bool moved_vertices = false;                                  ///< any, up or down
     std::vector<std::pair<TriangleId, Tin::Triangle>> triangles;  ///< each old slot once
     std::vector<std::pair<VertexId, Tin::Vertex>> vertices;       ///< in order of change
-    std::shared_ptr<const RemovalRecord> removal;                 ///< null: none
+    std::shared_ptr<RemovalRecord> removal;  ///< null: none; changed by its only owner alone
 };
 
 /// The records of one operation's parts, in order.

@@ -9,6 +9,7 @@
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -84,15 +85,20 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     const auto wished = require_wishes(services, request, session);
     if (const auto* refusal = std::get_if<Response>(&wished)) return *refusal;
     const Wishes& wishes = std::get<0>(wished);
+    begin_stage(0.1);
     auto asked = api::read_edit_request(request.body, services.read_limits());
     if (!asked) {
         return refuse(request, api::problem_of_faults(asked.kind(), std::move(asked.faults())));
     }
+    const auto memory =
+        require_memory(services, request, wishes.dry_run ? session.mesh_bytes() : 0);
+    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
 
     auto made = make_edit(session, *asked, services.limits, services.stopping);
     if (const auto* no = std::get_if<NoEdit>(&made))
         return refuse_edit(request, asked->polygon, *no);
     auto& edit = std::get<PendingEdit>(made);
+    begin_stage(0.8);
     edit.dry_run = wishes.dry_run;
     edit.want_mesh = kAnswerTypes[wishes.type] == kGlb;
     edit.want_delta = kAnswerTypes[wishes.type] == kDelta;
@@ -108,6 +114,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
         return refuse(request, api::ProblemType::NoSuchSession,
                       "The session was deleted while the edit ran: nothing of it is kept.");
     }
+    begin_stage(1.0);
     return send_edit(request, session, std::get<EditResult>(outcome), wishes);
 }
 

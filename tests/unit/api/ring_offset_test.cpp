@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/ring_offset.hpp"
 
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -104,6 +106,44 @@ TEST(RingOffset, RefusesWhatHasNoInsideOrIsLostInRounding) {
     const NoRing small = no_ring({{box(5e6, 5e6, 5e6 + 1, 5e6 + 1)}}, 1e-9);
     EXPECT_EQ(small.reason, NoRing::Reason::TooSmall);
     EXPECT_GT(small.limit, 1e-9);
+}
+
+/// Spikes that lie close together: their offset lines cross one another everywhere.
+Shape star(int spikes) {
+    Path path{{}, true, {}};
+    for (int i = 0; i < 2 * spikes; ++i) {
+        const double radius = i % 2 == 0 ? 100 : 90, angle = M_PI * i / spikes;
+        path.points.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    }
+    return {{path}};
+}
+
+TEST(RingOffset, StopsInTheMidstOfWhatTakesLong) {
+    const auto area = core::triangles_inside(star(2000), Winding::EvenOdd);
+    for (const bool is_inside : {false, true}) {
+        int asked = 0;
+        const auto stop = [&asked] { return ++asked > 1000; };
+        const auto made = is_inside ? ring_inside(*area, 10, stop) : ring_outside(*area, 10, stop);
+        ASSERT_TRUE(std::holds_alternative<NoRing>(made));
+        EXPECT_EQ(std::get<NoRing>(made).reason, NoRing::Reason::Stopped);
+        EXPECT_EQ(asked, 1001) << "and is not asked again";
+    }
+    outside(star(5), 10);  // what comes later is not told
+}
+
+TEST(RingOffset, WhoIsToldToStopStopsAlone) {
+    std::atomic<bool> ended{false};
+    std::thread told([&ended] {
+        const auto area = core::triangles_inside(star(50), Winding::EvenOdd);
+        while (!ended) {
+            const auto made = ring_outside(*area, 10, [] { return true; });
+            EXPECT_EQ(std::get<NoRing>(made).reason, NoRing::Reason::Stopped);
+        }
+    });
+    for (int i = 0; i < 20; ++i)
+        EXPECT_EQ(outside(star(50), 10).ring.paths.size(), 1U);
+    ended = true;
+    told.join();
 }
 
 }  // namespace

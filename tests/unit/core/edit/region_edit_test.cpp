@@ -300,6 +300,23 @@ TEST(RegionEdit, APolygonBeyondTheMeshIsEditedWhereItLiesOnIt) {
     EXPECT_NEAR(tin.vertex(strip.vertex).z, 0.5 + (7 - 0.5) * 0.5, 1e-12) << "it takes a share";
 }
 
+TEST(RegionEdit, TellsItsProgress) {
+    const Tin before = built(test::grid(8, 8));
+    const RegionEdit lower = ElevationEdit{level_plane(1), rim(2.5, 2.5, 5.5, 5.5, 0.5)};
+    for (const RegionEdit& any : {lower, RegionEdit(SmoothEdit{4, true})}) {
+        Tin tin = before;
+        const Integrated pad = integrated(tin, {{box(2.5, 2.5, 5.5, 5.5)}});
+        std::vector<double> told;
+        EditLimits limits;
+        limits.progress = [&told](double share) { told.push_back(share); };
+        ASSERT_TRUE(edit_region(tin, pad.outline(), Winding::EvenOdd, any, limits).ok());
+        EXPECT_GE(told.size(), 4U);
+        EXPECT_TRUE(std::ranges::is_sorted(told));
+        EXPECT_GE(told.back(), 0.5);
+        EXPECT_LE(told.back(), 1.0);
+    }
+}
+
 TEST(RegionEdit, AnErrorLeavesTheMeshAsItWas) {
     Tin tin = built(test::grid(8, 8));
     const Integrated pad = integrated(tin, {{box(2.5, 2.5, 5.5, 5.5)}});

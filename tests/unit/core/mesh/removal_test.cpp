@@ -98,6 +98,28 @@ TEST(Removal, MovesTheLastSlotsIntoTheGaps) {
     expect_indexed(tin);
 }
 
+/// In destructors nothing may fail: what memory there was is the mesh's again.
+TEST(Removal, OfARecordThatIsNotNeededNothingIsCopied) {
+    for (const bool again : {false, true}) {
+        Tin tin = built(test::grid(4, 4));
+        if (again) remove(tin, {{4}, {5}});
+        const Tin before = tin;
+        const TriangleId* const components = tin.components().data();
+        Undo undo = remove(tin, {{0}, {1}});
+        EXPECT_NE(tin.components().data(), components);
+        take_back(tin, std::move(undo));
+        EXPECT_EQ(tin.components().data(), components);
+        EXPECT_TRUE(test::same_tin(tin, before));
+        expect_indexed(tin);
+        {
+            Surgery surgery(tin);
+            surgery.remove(std::vector<TriangleId>{{0}, {1}});
+        }
+        EXPECT_EQ(tin.components().data(), components);
+        EXPECT_TRUE(test::same_tin(tin, before));
+    }
+}
+
 TEST(Removal, PartsAVertexBetweenTwoFans) {
     Tin tin = built(test::grid(2, 2));
     // Of the four cells around the middle two that touch there alone are left.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "server/edit_making.hpp"
 #include "server/reply.hpp"
+#include "server/work.hpp"
 #include "tests/unit/server/handlers.hpp"
 
 namespace tinsmith::server {
@@ -157,6 +159,52 @@ TEST_F(EditRoutes, HonourIfMatchAndKeys) {
     EXPECT_EQ(again.body, first.body);
     EXPECT_EQ(header(again, "Idempotency-Replayed"), "true");
     EXPECT_EQ(version_of(session), 3);
+}
+
+/// A ring that takes long, as its lines cross one another everywhere.
+TEST_F(EditRoutes, EndAtTheDeadlineWhileTheirRingIsDrawn) {
+    json points = json::array();
+    constexpr int kSpikes = 1500;
+    for (int i = 0; i <= 2 * kSpikes; ++i) {
+        const double radius = i % 2 == 0 ? 3 : 2.7, angle = M_PI * (i % (2 * kSpikes)) / kSpikes;
+        points.push_back({5 + radius * std::cos(angle), 5 + radius * std::sin(angle)});
+    }
+    const json star{{"type", "Polygon"}, {"coordinates", json::array({points})}};
+    ASSERT_EQ(post(session + "/polygons", star.dump()).status, 200);
+    Limits limits = services.limits;
+    limits.max_edit_seconds = 0.1;
+    for (const char* strip : {"rim", "taper"}) {
+        const json body{{"operation", "set"}, {"polygon", "p2"}, {"elevation", 1}, {strip, 0.3}};
+        const auto asked = api::read_edit_request(body.dump(), services.read_limits());
+        ASSERT_TRUE(asked);
+        const auto made = make_edit(*services.sessions.find(session.substr(13)), *asked, limits,
+                                    services.stopping);
+        ASSERT_TRUE(std::holds_alternative<NoEdit>(made));
+        const auto& no = std::get<NoEdit>(made);
+        ASSERT_TRUE(std::holds_alternative<core::Errors>(no));
+        EXPECT_EQ(std::get<core::Errors>(no)[0].code, core::ErrorCode::Cancelled);
+    }
+}
+
+TEST_F(EditRoutes, ADryRunAsksForTheMemoryOfItsCopy) {
+    const json body{{"operation", "offset"}, {"polygon", "p1"}, {"by", 1}};
+    auto all = services.sessions.borrow(services.limits.max_memory_bytes -
+                                        services.sessions.memory_bytes());
+    ASSERT_TRUE(all);
+    EXPECT_EQ(told(edit(body, {}, "?dry_run=true")), "out-of-memory");
+    all.reset();
+    EXPECT_EQ(edit(body, {}, "?dry_run=true").status, 200);
+}
+
+TEST_F(EditRoutes, ShowRealProgress) {
+    for (const char* query : {"", "?dry_run=true"}) {
+        std::vector<double> told_of;
+        Work work([&told_of](double progress) { told_of.push_back(progress); });
+        const WorkScope scope(work);
+        const json body{{"operation", "smooth"}, {"polygon", "p1"}, {"passes", 50}};
+        EXPECT_EQ(edit(body, {}, query).status, 200);
+        EXPECT_GT(told_of.size(), 20U);
+    }
 }
 
 TEST_F(EditRoutes, GoWithTheirPolygonOrKeepIt) {
