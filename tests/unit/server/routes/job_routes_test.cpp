@@ -233,6 +233,21 @@ TEST_F(JobRoutes, RaceTheirDeletion) {
     }
 }
 
+TEST(LargeJobs, AreRefusedForGood) {
+    Limits limits;
+    limits.job_bytes = 100;
+    Services services{limits};
+    const Router router{make_routes(services)};
+    const Request request{
+        "POST", "/v1/sessions", {}, {kAsync, {"content-type", "application/json"}}, kSquare,
+        {},     "test"};
+    const Response refused = router.handle(request);
+    EXPECT_EQ(refused.status, 503);
+    EXPECT_NE(refused.body.find("job_bytes"), std::string::npos);
+    EXPECT_TRUE(std::ranges::none_of(
+        refused.headers, [](const NameValue& header) { return header.first == "Retry-After"; }));
+}
+
 /// A server with room for one job.
 class FewJobs : public testing::Test {
   protected:
