@@ -257,20 +257,25 @@ std::optional<api::JobView> Jobs::remove(const std::string& id, std::chrono::mil
     return view_of(*job);
 }
 
+void Jobs::stop() {
+    const std::lock_guard lock(mutex_);
+    shutting_down_ = true;
+    for (; !queue_.empty(); queue_.pop_front()) {
+        queue_.front()->work.stop();
+        end(*queue_.front(), stopped_answer(queue_.front()->request));
+    }
+    for (const auto& [id, job] : jobs_)
+        job->work.stop();
+    queue_changed_.notify_all();
+}
+
 void Jobs::shut_down() {
+    stop();
     std::vector<std::thread> threads;
     {
         const std::lock_guard lock(mutex_);
-        shutting_down_ = true;
-        for (const JobPtr& job : std::exchange(queue_, {})) {
-            job->work.stop();
-            end(*job, stopped_answer(job->request));
-        }
-        for (const auto& [id, job] : jobs_)
-            job->work.stop();
         threads.swap(threads_);
     }
-    queue_changed_.notify_all();
     for (std::thread& thread : threads)
         thread.join();
 }

@@ -76,7 +76,9 @@ class Jobs {
     /// has. What it was or is then; it may have been done before it could be stopped.
     std::optional<api::JobView> remove(const std::string& id, std::chrono::milliseconds longest);
 
-    /// Tells all to stop, takes no more on, and waits for those that run.
+    /// Tells all to stop and takes no more on. Waits for none.
+    void stop();
+    /// The same, and waits for those that run.
     void shut_down();
 
   private:

@@ -264,6 +264,25 @@ TEST_F(JobsTest, KeepTheLastAnswerWhateverWasDeletedBefore) {
     EXPECT_FALSE(jobs.view(first->id));
 }
 
+TEST_F(JobsTest, AreToldToStopBeforeTheyAreWaitedFor) {
+    Jobs jobs({.threads = 1});
+    std::promise<void> begun, may_end;
+    const auto blocked = jobs.add(request(), [&](const Request& r) {
+        begun.set_value();
+        may_end.get_future().wait();  // as for a session that a request has locked
+        return told_to_stop() ? refuse(r, api::ProblemType::Stopped, "Stopped.") : answer(r);
+    });
+    const auto waiting = jobs.add(request(), answer);
+    begun.get_future().wait();
+    jobs.stop();
+    EXPECT_EQ(state(jobs, blocked->id), JobState::Running);
+    EXPECT_EQ(state(jobs, waiting->id), JobState::Stopped);
+    EXPECT_FALSE(jobs.add(request(), answer));
+    may_end.set_value();
+    jobs.shut_down();
+    EXPECT_EQ(state(jobs, blocked->id), JobState::Stopped);
+}
+
 TEST_F(JobsTest, AreKeptForATime) {
     std::atomic<long> now{0};
     Jobs jobs({.age = seconds(100)}, [&now] { return Jobs::Time(seconds(now)); });
