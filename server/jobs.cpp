@@ -163,6 +163,7 @@ void Jobs::end(Job& job, Response answer) noexcept {
     job.view.progress = job.work.progress();
     job.request = {};
     job.task = nullptr;
+    if (const Heir heir = std::exchange(job.heir, nullptr)) heir(answer.status);
     job.ended = clock_();
     bytes_ -= job.bytes;
     live_bytes_ -= job.bytes;
@@ -178,6 +179,18 @@ void Jobs::end(Job& job, Response answer) noexcept {
     while (bytes_ > bounds_.bytes && ended_.size() > 1)
         drop_first_ended();
     job_ended_.notify_all();
+}
+
+void Jobs::when_ended(const std::string& id, Heir heir) noexcept {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end()) return;
+    const api::JobView& view = found->second->view;
+    if (api::has_ended(view.state)) {
+        heir(view.status);
+    } else {
+        found->second->heir = std::move(heir);
+    }
 }
 
 api::JobView Jobs::view_of(const Job& job) {

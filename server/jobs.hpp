@@ -54,6 +54,12 @@ class Jobs {
     /// body.
     std::optional<api::JobView> add(Request request, Task task);
 
+    /// To be told the status of the job's answer when it has ended, at once if it has: before
+    /// anyone else sees the end. Under a lock: must neither throw nor call back. Nothing where it
+    /// is gone.
+    using Heir = std::function<void(int status)>;
+    void when_ended(const std::string& id, Heir heir) noexcept;
+
     /// Whether there can ever be room for it.
     bool is_small_enough(const Request& request) const;
 
@@ -87,6 +93,7 @@ class Jobs {
         Work work;
         Request request;
         Task task;
+        Heir heir;
         Response answer;
         std::size_t bytes = 0;
         Time ended;

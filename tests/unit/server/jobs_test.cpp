@@ -264,6 +264,29 @@ TEST_F(JobsTest, KeepTheLastAnswerWhateverWasDeletedBefore) {
     EXPECT_FALSE(jobs.view(first->id));
 }
 
+TEST_F(JobsTest, TellTheirEnd) {
+    Jobs jobs({.threads = 1});
+    std::promise<void> begun;
+    const auto running =
+        jobs.add(request(), [&begun](const Request& r) { return endless(begun, r); });
+    const auto waiting = jobs.add(request(), answer);
+    std::vector<int> told;
+    const Jobs::Heir heir = [&told](int status) { told.push_back(status); };
+    jobs.when_ended(waiting->id, heir);
+    jobs.when_ended(running->id, heir);
+    jobs.when_ended("none", heir);
+    begun.get_future().wait();
+    EXPECT_TRUE(told.empty());
+    jobs.remove(waiting->id, kLong);
+    EXPECT_EQ(told, std::vector<int>{503}) << "it never began";
+    jobs.remove(running->id, kLong);
+    EXPECT_EQ(told.size(), 2U);
+    const auto done = jobs.add(request(), answer);
+    wait(jobs, done->id);
+    jobs.when_ended(done->id, heir);
+    EXPECT_EQ(told, (std::vector<int>{503, 503, 200})) << "at once where it has ended";
+}
+
 TEST_F(JobsTest, AreToldToStopBeforeTheyAreWaitedFor) {
     Jobs jobs({.threads = 1});
     std::promise<void> begun, may_end;

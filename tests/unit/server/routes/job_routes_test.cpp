@@ -147,6 +147,21 @@ TEST_F(JobRoutes, AreOneForOneKey) {
     EXPECT_EQ(version_of(session), 2);
 }
 
+TEST_F(JobRoutes, AreAskedForAnewWhereNothingCameOfThem) {
+    const std::string session = make_session();
+    const NameValue key{"idempotency-key", "k"};
+    const Response failed =
+        post(session + "/polygons", kParcel, {key, kAsync, {"if-match", "\"x\""}});
+    EXPECT_EQ(job(finished(failed))["status"], 412);
+    const Response again = post(session + "/polygons", kParcel, {key, kAsync});
+    EXPECT_EQ(header(again, "Idempotency-Replayed"), "");
+    EXPECT_EQ(job(finished(again))["status"], 200);
+    EXPECT_EQ(version_of(session), 2);
+    const Response third = post(session + "/polygons", kParcel, {key, kAsync});
+    EXPECT_EQ(header(third, "Location"), header(again, "Location")) << "something came of it";
+    EXPECT_EQ(services.answers.size(), 1U);
+}
+
 TEST_F(JobRoutes, ComeInPages) {
     const std::string session = make_session();
     for (int i = 0; i < 5; ++i)
