@@ -42,6 +42,24 @@ TEST(SessionVersions, KeepsVersionsWithinItsBytes) {
     EXPECT_TRUE(std::holds_alternative<core::Tin>(s.tin_at(gone.oldest, {})));
 }
 
+TEST(SessionVersions, CountsTheLargestMeshOnTheWay) {
+    Session s = make_session();
+    const std::size_t small = s.mesh_bytes();
+    PolygonEdit edit;
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) {
+            const double x = 1 + i, y = 1 + j;
+            edit.shapes.push_back(
+                {{{{{x, y}, {x + 0.5, y}, {x + 0.5, y + 0.5}, {x, y + 0.5}}, true}}});
+        }
+    edit.origins.resize(edit.shapes.size());
+    ASSERT_TRUE(std::holds_alternative<PolygonResult>(s.integrate(std::move(edit))));
+    s.undo({});
+    ASSERT_LT(s.mesh_bytes(), 2 * small);
+    EXPECT_GT(s.mesh_bytes_since(2), 10 * sizeof(core::Tin::Triangle) * 8);
+    EXPECT_EQ(s.mesh_bytes_since(3), s.mesh_bytes());
+}
+
 TEST(SessionVersions, MakesAVersionAgainUnlessStopped) {
     Session s = make_session();
     s.integrate(square_edit(2, 6));
