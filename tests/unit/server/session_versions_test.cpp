@@ -42,6 +42,42 @@ TEST(SessionVersions, KeepsVersionsWithinItsBytes) {
     EXPECT_TRUE(std::holds_alternative<core::Tin>(s.tin_at(gone.oldest, {})));
 }
 
+TEST(SessionVersions, SettlesLocksForNothing) {
+    HistoryLimits limits;
+    limits.bytes = 40'000;
+    Session s = make_session(limits);
+    for (int i = 0; i < 1500; ++i) {
+        LocksEdit edit;
+        edit.operation.shapes.push_back({{{{{0, 0}, {10, 0}}, false}}});
+        edit.operation.locked = i % 2 == 0;
+        ASSERT_TRUE(std::holds_alternative<LocksResult>(s.set_locks(std::move(edit), {})));
+    }
+    ASSERT_LE(s.view().memory_bytes, s.mesh_bytes() + limits.bytes);
+    int undone = 0;
+    while (std::holds_alternative<ChangeResult>(s.undo({})))
+        ++undone;
+    EXPECT_GT(undone, 5) << "what is settled takes nothing away";
+}
+
+TEST(SessionVersions, BoundsWhatChangesTell) {
+    HistoryLimits limits;
+    limits.bytes = 40'000;
+    Session s = make_session(limits);
+    ASSERT_TRUE(std::holds_alternative<PolygonResult>(s.integrate(square_edit(2, 6))));
+    // Undone and redone, nothing but the records of that becomes more.
+    for (int i = 0; i < 300; ++i) {
+        s.undo({});
+        s.redo({});
+        ASSERT_LE(s.view().memory_bytes, s.mesh_bytes() + limits.bytes);
+    }
+    const HistoryCopy history = s.history(0, 1);
+    EXPECT_GT(history.oldest, 300U);
+    EXPECT_LT(history.oldest + 5, history.version) << "some are kept";
+    EXPECT_TRUE(std::holds_alternative<VersionGone>(s.delta_since(history.oldest - 1)));
+    EXPECT_TRUE(std::holds_alternative<api::MeshDelta>(s.delta_since(history.oldest)));
+    EXPECT_TRUE(std::holds_alternative<core::Tin>(s.tin_at(history.oldest, {})));
+}
+
 TEST(SessionVersions, CountsTheLargestMeshOnTheWay) {
     Session s = make_session();
     const std::size_t small = s.mesh_bytes();
