@@ -14,6 +14,23 @@ void make_room(std::vector<T>& list, std::size_t more) {
     if (needed > list.capacity()) list.reserve(std::max(needed, list.capacity() * 2));
 }
 
+/// The part of all bytes that what changes tell of themselves may take.
+constexpr std::size_t kToldShare = 4;
+
+/// Counted whether or not the operations on the mesh share it.
+std::size_t told_bytes_of(const Change& change) noexcept {
+    std::size_t sum = 0;
+    for (const auto& slots : change.written)
+        sum += sizeof slots + held_bytes(*slots);
+    if (change.report) {
+        sum += sizeof(core::Report);
+        for (const core::ShapeReport& shape : change.report->shapes)
+            sum += held_bytes(shape);
+    }
+    if (change.locks) sum += held_bytes(*change.locks);
+    return change.answer ? sum + sizeof(api::EditAnswer) : sum;
+}
+
 }  // namespace
 
 History::History(HistoryLimits limits, std::size_t vertices, std::size_t triangles)
@@ -61,7 +78,7 @@ std::variant<WayBack, VersionGone> History::way_to(std::uint64_t version) const 
 std::vector<Polygon> History::polygons() const {
     std::vector<Polygon> list;
     const auto add = [&list](const auto& done) {
-        const auto* request = std::get_if<PolygonsOperation>(&*done.operation);
+        const auto* request = std::get_if<PolygonsOperation>(done.operation.get());
         for (std::size_t i = 0; request != nullptr && i < request->shapes.size(); ++i)
             list.push_back({*request, *done.report, i});
     };
@@ -88,7 +105,7 @@ void History::prepare(std::size_t added) {
 }
 
 std::size_t History::memory_bytes() const {
-    std::size_t sum = settled_bytes_;
+    std::size_t sum = settled_bytes_ + told_bytes_;
     for (const AppliedPtr& applied : applied_)
         sum += applied->lasting_bytes + applied->record_bytes;
     for (const Edit& edit : undoable_)
@@ -130,15 +147,21 @@ void History::replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept {
 }
 
 void History::keep(Change change) noexcept {
+    change.told_bytes = told_bytes_of(change);
+    told_bytes_ += change.told_bytes;
     changes_.push_back(std::move(change));
     shrink();
 }
 
 void History::settle_oldest() noexcept {
     const AppliedPtr& oldest = applied_.front();
-    settled_.push_back({oldest->operation, oldest->report});
-    settled_bytes_ += oldest->lasting_bytes;
-    settled_polygons_ += polygon_ids(*oldest->operation).size();
+    if (std::holds_alternative<PolygonsOperation>(*oldest->operation)) {
+        settled_.push_back({oldest->operation, oldest->report});
+        settled_bytes_ += oldest->lasting_bytes;
+        settled_polygons_ += polygon_ids(*oldest->operation).size();
+    } else {
+        settled_.push_back({});  // its place alone counts
+    }
     applied_.erase(applied_.begin());
     // Undo goes from the newest on: what is older than one that is out of reach is so too.
     const auto last = std::find_if(undoable_.rbegin(), undoable_.rend(),
@@ -146,6 +169,23 @@ void History::settle_oldest() noexcept {
     for (auto edit = undoable_.begin(); edit != last.base(); ++edit)
         leave_to_steps(edit->version, edit->removed_bytes);
     undoable_.erase(undoable_.begin(), last.base());
+    forget_unreachable();
+}
+
+/// No version is made again by way of a step that reaches below the base, nor one before it.
+void History::forget_unreachable() noexcept {
+    const auto newest = std::find_if(
+        changes_.rbegin(), changes_.rend(),
+        [this](const Change& change) { return change.step && change.step->first < base(); });
+    for (auto change = changes_.begin(); change != newest.base(); ++change) {
+        change->step.reset();
+        change->lone_bytes = 0;
+    }
+}
+
+void History::drop_oldest_change() noexcept {
+    told_bytes_ -= changes_.front().told_bytes;
+    changes_.erase(changes_.begin());
 }
 
 void History::drop_oldest_undoable() noexcept {
@@ -177,7 +217,9 @@ bool History::forget_oldest_lone() noexcept {
 
 /// Ends: each turn an edit or an operation less.
 void History::shrink() noexcept {
-    if (changes_.size() > limits_.operations + 1) changes_.erase(changes_.begin());
+    if (changes_.size() > limits_.operations + 1) drop_oldest_change();
+    while (changes_.size() > 2 && told_bytes_ > limits_.bytes / kToldShare)
+        drop_oldest_change();
     if (undoable_.size() > limits_.operations) drop_oldest_undoable();
     while (applied_.size() > limits_.operations || memory_bytes() > limits_.bytes) {
         const bool is_needed = !undoable_.empty() && undoable_.back().first <= base();

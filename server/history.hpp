@@ -49,6 +49,7 @@ struct Change {
     std::size_t triangles = 0;
     std::vector<std::shared_ptr<const SlotChanges>> written;  ///< since the version before
     std::optional<Exchange> step;  ///< since the version before; nothing: no longer kept
+    std::size_t told_bytes = 0;    ///< about what report, answer, locks and `written` hold
     std::size_t lone_bytes = 0;    ///< about what operations hold that steps alone keep
 };
 
@@ -81,7 +82,8 @@ struct Edit {
 ///
 /// Laws: versions only grow, also by undo and redo; a new edit drops what could be redone; beyond
 /// the limits the oldest goes first, and an operation that goes becomes part of the base: its
-/// polygons stay, but are not taken out any more. The newest edit can always be undone.
+/// polygons stay, but are not taken out any more. The newest edit can always be undone. What the
+/// changes tell of themselves takes at most a share of the bytes, the newest one's aside.
 /// After `prepare`, the next change to the history cannot fail.
 class History {
   public:
@@ -119,7 +121,7 @@ class History {
 
   private:
     struct Settled {
-        OperationPtr operation;
+        OperationPtr operation;  ///< null: of a kind that nobody asks for any more
         std::shared_ptr<const core::Report> report;
     };
 
@@ -129,11 +131,14 @@ class History {
     void drop_oldest_undoable() noexcept;
     void leave_to_steps(std::uint64_t version, std::size_t bytes) noexcept;
     bool forget_oldest_lone() noexcept;
+    void forget_unreachable() noexcept;
+    void drop_oldest_change() noexcept;
     void shrink() noexcept;
 
     HistoryLimits limits_;
     std::vector<Change> changes_;
     std::vector<Settled> settled_;  ///< the base, beside what the session was made of
+    std::size_t told_bytes_ = 0;    ///< of all changes
     std::size_t settled_bytes_ = 0;
     std::size_t settled_polygons_ = 0;
     std::vector<AppliedPtr> applied_;

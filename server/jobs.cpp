@@ -36,9 +36,20 @@ std::string new_id(std::uint64_t count) {
     return number.data() + random_hex(8);
 }
 
-Response stopped_answer(const Request& request) {
-    return refuse(request, api::ProblemType::Stopped,
-                  "The job was stopped before its work began; nothing was changed.");
+/// For want of the memory that a body takes.
+Response bare(api::ProblemType type) noexcept {
+    Response answer;
+    answer.status = api::problem_status(type);
+    return answer;
+}
+
+Response stopped_answer(const Request& request) noexcept {
+    try {
+        return refuse(request, api::ProblemType::Stopped,
+                      "The job was stopped before its work began; nothing was changed.");
+    } catch (const std::exception&) {
+        return bare(api::ProblemType::Stopped);
+    }
 }
 
 void log_end(const std::string& id, const Request& request, const Response& answer,
@@ -66,34 +77,45 @@ Jobs::~Jobs() {
     shut_down();
 }
 
+bool Jobs::is_small_enough(const Request& request) const {
+    return bytes_of(request) <= bounds_.bytes;
+}
+
 std::optional<api::JobView> Jobs::add(Request request, Task task) {
     const std::lock_guard lock(mutex_);
     drop_old();
     const std::size_t bytes = bytes_of(request);
-    if (shutting_down_ || queue_.size() >= bounds_.queued) return std::nullopt;
-    while (jobs_.size() >= bounds_.kept || bytes_ + bytes > bounds_.bytes) {
-        if (!drop_first_ended()) return std::nullopt;
-    }
+    // What has ended can make room, but only for what then fits.
+    const std::size_t live = jobs_.size() - ended_.size();
+    if (shutting_down_ || queue_.size() >= bounds_.queued || live >= bounds_.kept ||
+        live_bytes_ + bytes > bounds_.bytes)
+        return std::nullopt;
     auto job = std::make_shared<Job>();
     job->view.id = new_id(++count_);
     job->place.push_back(job->view.id);
+    job->id = job->place.begin();
     job->view.method = request.method;
     job->view.path = request.path;
     job->request = std::move(request);
     job->task = std::move(task);
     job->bytes = bytes;
-    jobs_.emplace(job->view.id, job);
+    api::JobView view = view_of(*job);
+    const auto place = jobs_.emplace(job->view.id, job).first;
     try {
         queue_.push_back(job);
         start_thread();
     } catch (...) {
         if (!queue_.empty() && queue_.back() == job) queue_.pop_back();
-        jobs_.erase(job->view.id);
+        jobs_.erase(place);
         throw;
     }
+    // From here on nothing fails.
     bytes_ += bytes;
+    live_bytes_ += bytes;
+    while (!ended_.empty() && (jobs_.size() > bounds_.kept || bytes_ > bounds_.bytes))
+        drop_first_ended();
     queue_changed_.notify_one();
-    return view_of(*job);
+    return view;
 }
 
 /// One more for one more job, up to their number; where the system has none left, those that there
@@ -120,7 +142,12 @@ void Jobs::run_jobs() {
         Response answer;
         {
             const WorkScope scope(job->work);
-            answer = job->task(job->request);
+            try {
+                answer = job->task(job->request);
+            } catch (...) {
+                // Want of memory, most likely, even for the words to say so. The service goes on.
+                answer = bare(api::ProblemType::OutOfMemory);
+            }
         }
         if (answer.status < kFirstRefusal) job->work.finish();
         log_end(job->view.id, job->request, answer, clock_() - start);
@@ -136,8 +163,10 @@ void Jobs::end(Job& job, Response answer) noexcept {
     job.view.progress = job.work.progress();
     job.request = {};
     job.task = nullptr;
+    if (const Heir heir = std::exchange(job.heir, nullptr)) heir(answer.status);
     job.ended = clock_();
     bytes_ -= job.bytes;
+    live_bytes_ -= job.bytes;
     job.bytes = bytes_of(answer);
     job.view.kept = job.bytes <= bounds_.bytes;
     if (!job.view.kept) {
@@ -147,9 +176,21 @@ void Jobs::end(Job& job, Response answer) noexcept {
     job.answer = std::move(answer);
     bytes_ += job.bytes;
     ended_.splice(ended_.end(), job.place);
-    while (bytes_ > bounds_.bytes && ended_.size() > 1 && drop_first_ended()) {
-    }
+    while (bytes_ > bounds_.bytes && ended_.size() > 1)
+        drop_first_ended();
     job_ended_.notify_all();
+}
+
+void Jobs::when_ended(const std::string& id, Heir heir) noexcept {
+    const std::lock_guard lock(mutex_);
+    const auto found = jobs_.find(id);
+    if (found == jobs_.end()) return;
+    const api::JobView& view = found->second->view;
+    if (api::has_ended(view.state)) {
+        heir(view.status);
+    } else {
+        found->second->heir = std::move(heir);
+    }
 }
 
 api::JobView Jobs::view_of(const Job& job) {
@@ -158,33 +199,22 @@ api::JobView Jobs::view_of(const Job& job) {
     return view;
 }
 
-/// Requires: the lock. False: none has ended.
-bool Jobs::drop_first_ended() {
-    while (!ended_.empty()) {
-        const std::string id = std::move(ended_.front());
-        ended_.pop_front();
-        if (!jobs_.contains(id)) continue;
-        drop(id);
-        return true;
-    }
-    return false;
+/// Requires: the lock, and that one has ended.
+void Jobs::drop_first_ended() noexcept {
+    drop(jobs_.find(ended_.front()));
 }
 
 /// Requires: the lock.
 void Jobs::drop_old() {
     const Time now = clock_();
-    while (!ended_.empty()) {
-        const auto first = jobs_.find(ended_.front());
-        if (first != jobs_.end() && now - first->second->ended < bounds_.age) return;
-        if (first != jobs_.end()) drop(first->first);
-        ended_.pop_front();
-    }
+    while (!ended_.empty() && now - jobs_.find(ended_.front())->second->ended >= bounds_.age)
+        drop_first_ended();
 }
 
-/// Requires: the lock, and that the job is there and has ended.
-void Jobs::drop(const std::string& id) {
-    const auto job = jobs_.find(id);
+/// Requires: the lock, and that the job has ended.
+void Jobs::drop(JobMap::iterator job) noexcept {
     bytes_ -= job->second->bytes;
+    ended_.erase(job->second->id);
     jobs_.erase(job);
 }
 
@@ -225,8 +255,9 @@ std::optional<api::JobView> Jobs::remove(const std::string& id, std::chrono::mil
     if (found == jobs_.end()) return std::nullopt;
     const JobPtr job = found->second;
     if (api::has_ended(job->view.state)) {
-        drop(id);
-        return view_of(*job);
+        api::JobView view = view_of(*job);
+        drop(found);
+        return view;
     }
     job->work.stop();
     const auto waiting = std::find(queue_.begin(), queue_.end(), job);
@@ -239,20 +270,25 @@ std::optional<api::JobView> Jobs::remove(const std::string& id, std::chrono::mil
     return view_of(*job);
 }
 
+void Jobs::stop() {
+    const std::lock_guard lock(mutex_);
+    shutting_down_ = true;
+    for (; !queue_.empty(); queue_.pop_front()) {
+        queue_.front()->work.stop();
+        end(*queue_.front(), stopped_answer(queue_.front()->request));
+    }
+    for (const auto& [id, job] : jobs_)
+        job->work.stop();
+    queue_changed_.notify_all();
+}
+
 void Jobs::shut_down() {
+    stop();
     std::vector<std::thread> threads;
     {
         const std::lock_guard lock(mutex_);
-        shutting_down_ = true;
-        for (const JobPtr& job : std::exchange(queue_, {})) {
-            job->work.stop();
-            end(*job, stopped_answer(job->request));
-        }
-        for (const auto& [id, job] : jobs_)
-            job->work.stop();
         threads.swap(threads_);
     }
-    queue_changed_.notify_all();
     for (std::thread& thread : threads)
         thread.join();
 }

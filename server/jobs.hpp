@@ -49,8 +49,19 @@ class Jobs {
     Jobs(const Jobs&) = delete;
     Jobs& operator=(const Jobs&) = delete;
 
-    /// Takes a request on; nothing: no room, or the service is stopping. The task must not throw.
+    /// Takes a request on; nothing: no room, or the service is stopping; then no answer was dropped
+    /// for it. An exception leaves all as it was. A task that throws is answered 507 without a
+    /// body.
     std::optional<api::JobView> add(Request request, Task task);
+
+    /// To be told the status of the job's answer when it has ended, at once if it has: before
+    /// anyone else sees the end. Under a lock: must neither throw nor call back. Nothing where it
+    /// is gone.
+    using Heir = std::function<void(int status)>;
+    void when_ended(const std::string& id, Heir heir) noexcept;
+
+    /// Whether there can ever be room for it.
+    bool is_small_enough(const Request& request) const;
 
     std::optional<api::JobView> view(const std::string& id);
 
@@ -71,7 +82,9 @@ class Jobs {
     /// has. What it was or is then; it may have been done before it could be stopped.
     std::optional<api::JobView> remove(const std::string& id, std::chrono::milliseconds longest);
 
-    /// Tells all to stop, takes no more on, and waits for those that run.
+    /// Tells all to stop and takes no more on. Waits for none.
+    void stop();
+    /// The same, and waits for those that run.
     void shut_down();
 
   private:
@@ -80,30 +93,34 @@ class Jobs {
         Work work;
         Request request;
         Task task;
+        Heir heir;
         Response answer;
         std::size_t bytes = 0;
         Time ended;
         std::list<std::string> place;  ///< its id, to be moved into `ended_`: an end must not fail
+        std::list<std::string>::iterator id;  ///< there, or in `ended_`
     };
     using JobPtr = std::shared_ptr<Job>;
+    using JobMap = std::map<std::string, JobPtr>;
 
     static api::JobView view_of(const Job& job);
     void start_thread();
     void run_jobs();
     void end(Job& job, Response answer) noexcept;
     void drop_old();
-    bool drop_first_ended();
-    void drop(const std::string& id);
+    void drop_first_ended() noexcept;
+    void drop(JobMap::iterator job) noexcept;
 
     const Bounds bounds_;
     const Clock clock_;
     std::mutex mutex_;
     std::condition_variable queue_changed_;
     std::condition_variable job_ended_;
-    std::map<std::string, JobPtr> jobs_;  ///< in the order in which they came
+    JobMap jobs_;  ///< in the order in which they came
     std::deque<JobPtr> queue_;
-    std::list<std::string> ended_;  ///< ids, in that order; some perhaps dropped already
+    std::list<std::string> ended_;  ///< ids of those of `jobs_`, in that order
     std::size_t bytes_ = 0;
+    std::size_t live_bytes_ = 0;  ///< of those that have not ended
     std::uint64_t count_ = 0;
     bool shutting_down_ = false;
     std::vector<std::thread> threads_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/kept_answers.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <new>
 #include <utility>
@@ -61,10 +62,11 @@ KeptAnswers::Verdict KeptAnswers::begin(const Name& name, const std::string& pri
     return entry.answer;
 }
 
-void KeptAnswers::keep(const Name& name, const Response& answer) {
+std::uint64_t KeptAnswers::keep(const Name& name, const Response& answer) {
     const std::lock_guard lock(mutex_);
+    const std::uint64_t number = ++count_;
     const auto place = entries_.find(name);
-    if (place == entries_.end()) return;
+    if (place == entries_.end()) return number;
     Entry& entry = place->second;
     entry.whole = bytes_of(name, answer) <= bounds_.bytes / kShare;
     if (entry.whole) entry.whole = copy_if_possible(answer, entry.answer);
@@ -73,9 +75,18 @@ void KeptAnswers::keep(const Name& name, const Response& answer) {
     auto& siblings = append(order_, of_scope_, name);
     entry.place = std::prev(order_.end());
     entry.running = false;
+    entry.number = number;
     bytes_ += entry.bytes;
     if (siblings.size() > bounds_.per_scope) erase(entries_.find(siblings.front()));
     make_room();
+    return number;
+}
+
+void KeptAnswers::take_back(const Name& name, std::uint64_t number) noexcept {
+    const std::lock_guard lock(mutex_);
+    const auto place = entries_.find(name);
+    if (place != entries_.end() && !place->second.running && place->second.number == number)
+        erase(place);
 }
 
 void KeptAnswers::drop(const Name& name) noexcept {
@@ -94,11 +105,12 @@ void KeptAnswers::make_room() {
     }
 }
 
-/// Requires: the lock, and the oldest of its scope, not running.
+/// Requires: the lock, and not running. Fast for the oldest of its scope.
 void KeptAnswers::erase(Entries::iterator entry) {
     const auto siblings = of_scope_.find(entry->first.first);
-    siblings->second.pop_front();
-    if (siblings->second.empty()) of_scope_.erase(siblings);
+    std::deque<Name>& names = siblings->second;
+    names.erase(std::find(names.begin(), names.end(), entry->first));
+    if (names.empty()) of_scope_.erase(siblings);
     order_.erase(entry->second.place);
     bytes_ -= entry->second.bytes;
     entries_.erase(entry);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <list>
@@ -51,8 +52,14 @@ class KeptAnswers {
     /// `print` tells requests apart: equal for equal ones. After GoOn the caller must end with one
     /// of `keep` and `drop`.
     Verdict begin(const Name& name, const std::string& print);
-    void keep(const Name& name, const Response& answer);
+    /// A number of its own for what was kept.
+    std::uint64_t keep(const Name& name, const Response& answer);
     void drop(const Name& name) noexcept;
+
+    /// Drops what was kept under that number, if it is still there: the answer has turned out to be
+    /// that of a request that did nothing. The next one with its key is let through.
+    /// Cost: linear in the answers of its scope.
+    void take_back(const Name& name, std::uint64_t number) noexcept;
 
     /// Drops all of one scope, but for what is running.
     void forget(const std::string& scope);
@@ -67,6 +74,7 @@ class KeptAnswers {
         bool whole = true;
         Response answer;
         std::size_t bytes = 0;
+        std::uint64_t number = 0;  ///< once it is not running
         Time since;
         std::list<Name>::iterator place;  ///< in `order_`, once it is not running
     };
@@ -82,6 +90,7 @@ class KeptAnswers {
     std::list<Name> order_;  ///< of those that are kept, the oldest in front
     std::map<std::string, std::deque<Name>> of_scope_;  ///< the same by scope, in the same order
     std::size_t bytes_ = 0;
+    std::uint64_t count_ = 0;
 };
 
 }  // namespace tinsmith::server

@@ -8,6 +8,30 @@
 
 namespace tinsmith::server {
 
+std::size_t held_bytes(const core::ShapeReport& report) {
+    std::size_t sum = sizeof report;
+    for (const core::Chain& chain : report.chains)
+        sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
+    for (const core::OutsidePart& part : report.outside)
+        sum += sizeof part + part.points.size() * sizeof(core::Point2);
+    return sum;
+}
+
+std::size_t held_bytes(const LocksDone& done) {
+    std::size_t sum = sizeof done;
+    for (const core::LockReport& report : done.paths) {
+        sum += sizeof report;
+        for (const auto& stretch : report.without_edge)
+            sum += sizeof stretch + stretch.size() * sizeof(core::Point2);
+    }
+    return sum;
+}
+
+std::size_t held_bytes(const SlotChanges& written) {
+    return sizeof written +
+           (written.vertices.size() + written.triangles.size()) * sizeof(std::uint32_t);
+}
+
 namespace {
 
 std::size_t bytes_of(const core::Shape& shape) {
@@ -22,15 +46,9 @@ std::size_t bytes_of(const core::Shape& shape) {
 std::size_t bytes_of(const PolygonsOperation& operation, const core::Report& report,
                      std::size_t shape) {
     const PolygonOrigin& origin = operation.origins[shape];
-    std::size_t sum = sizeof(core::Shape) + sizeof origin + sizeof(core::ShapeReport) +
-                      origin.properties.size() + origin.client_id.size() +
-                      origin.polygon_starts.size() * sizeof(std::size_t);
-    sum += bytes_of(operation.shapes[shape]);
-    for (const core::Chain& chain : report.shapes[shape].chains)
-        sum += sizeof chain + chain.vertices.size() * sizeof(core::VertexId);
-    for (const core::OutsidePart& part : report.shapes[shape].outside)
-        sum += sizeof part + part.points.size() * sizeof(core::Point2);
-    return sum;
+    std::size_t sum = sizeof(core::Shape) + sizeof origin + origin.properties.size() +
+                      origin.client_id.size() + origin.polygon_starts.size() * sizeof(std::size_t);
+    return sum + bytes_of(operation.shapes[shape]) + held_bytes(report.shapes[shape]);
 }
 
 std::size_t bytes_of(const EditOperation& operation) {
@@ -48,7 +66,7 @@ std::size_t bytes_of(const core::Undo& undo, const SlotChanges& written) {
                record.vertices.size() * sizeof record.vertices[0];
         if (record.removal) sum += record.removal->memory_bytes();
     }
-    return sum + (written.vertices.size() + written.triangles.size()) * sizeof(std::uint32_t);
+    return sum + held_bytes(written);
 }
 
 /// Takes an operation back unless told to keep it.
@@ -92,15 +110,10 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polyg
 }
 
 std::size_t bytes_of(const LocksOperation& operation, const LocksDone& done) {
-    std::size_t sum = sizeof operation + sizeof done;
+    std::size_t sum = sizeof operation + held_bytes(done);
     for (const core::Shape& shape : operation.shapes) {
         for (const core::Path& path : shape.paths)
             sum += sizeof path + path.points.size() * sizeof(core::Point2);
-    }
-    for (const core::LockReport& report : done.paths) {
-        sum += sizeof report;
-        for (const auto& stretch : report.without_edge)
-            sum += sizeof stretch + stretch.size() * sizeof(core::Point2);
     }
     return sum;
 }

@@ -80,6 +80,11 @@ struct Remainder {
 };
 Remainder without_polygon(const OperationPtr& operation, std::string_view id);
 
+/// About what these hold in memory.
+std::size_t held_bytes(const core::ShapeReport& report);
+std::size_t held_bytes(const LocksDone& done);
+std::size_t held_bytes(const SlotChanges& written);
+
 /// The ids that the operation brings; none for kinds that bring no polygon.
 const std::vector<std::string>& polygon_ids(const Operation& operation);
 

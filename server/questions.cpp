@@ -203,7 +203,8 @@ std::size_t volume_bytes(const Session& session, const api::VolumeRequest& reque
                          const Session* other) {
     std::size_t bytes = session.mesh_bytes();
     if (other != nullptr) bytes += other->mesh_bytes();
-    if (std::holds_alternative<api::EarlierVersion>(request.against)) bytes += session.mesh_bytes();
+    if (const auto* earlier = std::get_if<api::EarlierVersion>(&request.against))
+        bytes += session.mesh_bytes_since(earlier->version);
     return bytes;
 }
 

@@ -77,6 +77,9 @@ class Session {
     std::variant<std::monostate, VersionGone, VersionAhead> missing(std::uint64_t version) const;
     /// Bytes of a copy of the mesh. Waits for no edit.
     std::size_t mesh_bytes() const;
+    /// About what making the mesh of an earlier version takes: the largest that it was since. Takes
+    /// the readers' lock.
+    std::size_t mesh_bytes_since(std::uint64_t version) const;
     /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
     /// it. Holds the readers' lock while their regions are found.
     DrapedCopy draped(std::optional<std::string_view> id = {}) const;

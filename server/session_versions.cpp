@@ -31,6 +31,18 @@ VersionOutcome Session::tin_at(std::uint64_t wanted, const RunLimits& limits) co
     return tin;
 }
 
+std::size_t Session::mesh_bytes_since(std::uint64_t wanted) const {
+    const auto lock = lock_to_read();
+    std::size_t most = tin_.memory_bytes();
+    for (const Change& change : history_.changes()) {
+        if (change.version < wanted) continue;
+        const std::size_t vertices = sizeof(core::Tin::Vertex) + sizeof(core::VertexId);
+        most = std::max(
+            most, change.vertices * vertices + change.triangles * sizeof(core::Tin::Triangle));
+    }
+    return most;
+}
+
 std::variant<std::monostate, VersionGone, VersionAhead> Session::missing(
     std::uint64_t wanted) const {
     const auto lock = lock_to_read();

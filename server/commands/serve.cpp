@@ -65,8 +65,12 @@ bool serve_until_stopped(HttpServer& server, Services& services, const StopSigna
     signals.release();
     log_info("stopping: requests under way are answered first");
     server.stop();
+    // A job may wait for a session that a request has locked: it ends after that one, so jobs are
+    // told now but waited for last.
+    services.jobs.stop();
+    served.wait_for(kGrace);
+    services.stopping = true;
     services.jobs.shut_down();
-    if (served.wait_for(kGrace) == std::future_status::timeout) services.stopping = true;
     return served.get();
 }
 

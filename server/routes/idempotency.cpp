@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -17,6 +18,7 @@ namespace {
 using api::ProblemType;
 
 constexpr std::size_t kLongestKey = 255;
+constexpr int kAccepted = 202;
 
 /// `"abc"` as the draft wants it, or abc as most clients send it: the same key.
 std::optional<std::string> key_in(std::string_view field) {
@@ -40,15 +42,27 @@ std::string print_of(const Request& request) {
     return sha256_of(parts);
 }
 
-bool is_worth_keeping(const Response& answer) {
+bool is_worth_keeping(int status) {
     static constexpr std::array kOfTheMoment{
         ProblemType::NotAcceptable, ProblemType::VersionMismatch, ProblemType::UnsupportedMediaType,
         ProblemType::PreconditionRequired, ProblemType::TooManySessions};
     static constexpr int kServerErrors = 500;
-    return answer.status < kServerErrors &&
-           std::none_of(kOfTheMoment.begin(), kOfTheMoment.end(), [&answer](ProblemType type) {
-               return api::problem_status(type) == answer.status;
-           });
+    return status < kServerErrors &&
+           std::none_of(kOfTheMoment.begin(), kOfTheMoment.end(),
+                        [status](ProblemType type) { return api::problem_status(type) == status; });
+}
+
+/// The promise of a job was kept as the answer: it goes where the job comes to an answer that would
+/// not have been kept itself.
+void follow_job(Services& services, const Response& promise, const KeptAnswers::Name& name,
+                std::uint64_t number) {
+    const auto where = std::find_if(promise.headers.begin(), promise.headers.end(),
+                                    [](const NameValue& h) { return h.first == "Location"; });
+    if (where == promise.headers.end()) return;
+    const std::string id = where->second.substr(where->second.rfind('/') + 1);
+    services.jobs.when_ended(id, [&answers = services.answers, name, number](int status) {
+        if (!is_worth_keeping(status)) answers.take_back(name, number);
+    });
 }
 
 /// Lets go of the key where no answer was kept, exceptions included.
@@ -111,7 +125,10 @@ Handler keyed(Services& services, Handler handler) {
         if (auto refusal = std::visit(Refusals{request}, verdict)) return *std::move(refusal);
         const Claim claim(services.answers, name);
         Response response = handler(request, arguments);
-        if (is_worth_keeping(response)) services.answers.keep(name, response);
+        if (is_worth_keeping(response.status)) {
+            const std::uint64_t number = services.answers.keep(name, response);
+            if (response.status == kAccepted) follow_job(services, response, name, number);
+        }
         return response;
     };
 }

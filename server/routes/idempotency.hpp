@@ -13,7 +13,8 @@ namespace tinsmith::server {
 /// query, Content-Type and body: the first answer again with Idempotency-Replayed: true. Another:
 /// 422. While the first still runs: 409 with Retry-After. A malformed key: 400.
 /// Kept are answers below 500 that the same request would get again; what depends on the moment or
-/// on other headers (406, 412, 415, 428, 429) did nothing and is judged anew.
+/// on other headers (406, 412, 415, 428, 429) did nothing and is judged anew. A job's 202 is kept
+/// until the job ends with an answer that would not be.
 /// Requests without a key go straight through.
 Handler keyed(Services& services, Handler handler);
 

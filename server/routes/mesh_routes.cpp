@@ -68,7 +68,7 @@ Step<std::optional<std::uint64_t>> require_version(const Request& request, const
 Step<MeshCopy> copy_mesh(Services& services, const Session& session, const Request& request,
                          std::optional<std::uint64_t> version) {
     if (!version) return session.copy_mesh();
-    const auto memory = require_memory(services, request, session.mesh_bytes());
+    const auto memory = require_memory(services, request, session.mesh_bytes_since(*version));
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     const auto tin = session.tin_at(*version, rerun_limits(services.limits, services.stopping));
     if (const auto* mesh = std::get_if<core::Tin>(&tin)) return MeshCopy{mesh->to_data(), *version};

@@ -35,6 +35,11 @@ Handler deferrable(Services& services, Handler handler, Names names) {
         const bool is_nowhere =
             names == Names::Session && !arguments.empty() && !services.sessions.find(arguments[0]);
         if (is_nowhere || !prefers_a_job(request)) return handler(request, arguments);
+        if (!services.jobs.is_small_enough(request)) {
+            return refuse(request, api::ProblemType::TooManyJobs,
+                          "The request is larger than all jobs together may be (job_bytes of GET "
+                          "/v1/limits); nothing was begun. Ask without Prefer: respond-async.");
+        }
         const auto job = services.jobs.add(request, [handler, arguments](const Request& asked) {
             return answer_safely(asked, [&] { return handler(asked, arguments); });
         });

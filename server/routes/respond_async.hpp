@@ -17,8 +17,8 @@ enum class Names {
 ///
 /// Laws: the handler is called once, on another thread, with the same request; what it answers is
 /// the job's result. A path that names no session is answered at once whatever the method, and so
-/// is a request without the preference. No room for a job: 503 with Retry-After, and nothing was
-/// begun.
+/// is a request without the preference. No room for a job: 503, and nothing was begun; with
+/// Retry-After where there may be room later.
 Handler deferrable(Services& services, Handler handler, Names names = Names::Session);
 
 }  // namespace tinsmith::server

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <future>
+#include <new>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -200,6 +201,109 @@ TEST_F(JobsTest, AreBoundedInBytes) {
     EXPECT_TRUE(std::holds_alternative<Jobs::NotKept>(jobs.result(large->id)));
     EXPECT_EQ(state(jobs, large->id), JobState::Done);
     EXPECT_FALSE(jobs.view(large->id)->kept);
+}
+
+TEST_F(JobsTest, SurviveATaskThatThrows) {
+    Jobs jobs({.threads = 1});
+    const auto job =
+        jobs.add(request(), [](const Request&) -> Response { throw std::bad_alloc(); });
+    EXPECT_EQ(wait(jobs, job->id).status, 507);
+    EXPECT_EQ(state(jobs, job->id), JobState::Failed);
+    EXPECT_EQ(wait(jobs, jobs.add(request("next"), answer)->id).body, "next");
+}
+
+TEST_F(JobsTest, KeepAnswersWhereOneIsRefused) {
+    Jobs jobs({.threads = 1, .kept = 3, .bytes = 10'000});
+    std::vector<std::string> ids;
+    for (int i = 0; i < 2; ++i) {
+        ids.push_back(jobs.add(request("small"), answer)->id);
+        wait(jobs, ids.back());
+    }
+    EXPECT_FALSE(jobs.is_small_enough(request(std::string(20'000, 'x'))));
+    EXPECT_FALSE(jobs.add(request(std::string(20'000, 'x')), answer));
+    EXPECT_EQ(jobs.after("", 10).jobs.size(), 2U) << "it could not have helped to drop them";
+    std::promise<void> begun;
+    const auto running = jobs.add(request(std::string(4'000, 'x')),
+                                  [&begun](const Request& r) { return endless(begun, r); });
+    begun.get_future().wait();
+    EXPECT_TRUE(jobs.is_small_enough(request(std::string(7'000, 'x'))));
+    EXPECT_FALSE(jobs.add(request(std::string(7'000, 'x')), answer)) << "one that runs takes it";
+    EXPECT_EQ(jobs.after("", 10).jobs.size(), 3U);
+    EXPECT_TRUE(jobs.add(request(), answer));
+    EXPECT_FALSE(jobs.view(ids[0])) << "the first that ended made room";
+    EXPECT_TRUE(jobs.view(ids[1]));
+    EXPECT_TRUE(jobs.add(request(), answer));
+    EXPECT_FALSE(jobs.add(request(), answer)) << "as many that have not ended as there may be";
+    EXPECT_EQ(jobs.after("", 10).jobs.size(), 3U);
+}
+
+TEST_F(JobsTest, KeepTheLastAnswerWhateverWasDeletedBefore) {
+    Jobs jobs({.threads = 1, .bytes = 10'000});
+    wait(jobs, jobs.add(request(), answer)->id);
+    for (int i = 0; i < 5; ++i) {
+        const auto gone = jobs.add(request(), answer);
+        wait(jobs, gone->id);
+        jobs.remove(gone->id, kLong);
+    }
+    std::promise<void> begun, first_may_end, second_may_end;
+    const auto first = jobs.add(request(), [&](const Request&) {
+        begun.set_value();
+        first_may_end.get_future().wait();
+        return ok("text/plain", std::string(8'000, 'y'));
+    });
+    begun.get_future().wait();
+    const auto second = jobs.add(request(std::string(4'000, 'x')), [&](const Request& r) {
+        second_may_end.get_future().wait();
+        return answer(r);
+    });
+    first_may_end.set_value();
+    EXPECT_EQ(wait(jobs, first->id).body.size(), 8'000U)
+        << "too much for as long as both are there";
+    second_may_end.set_value();
+    EXPECT_EQ(wait(jobs, second->id).body.size(), 4'000U);
+    EXPECT_FALSE(jobs.view(first->id));
+}
+
+TEST_F(JobsTest, TellTheirEnd) {
+    Jobs jobs({.threads = 1});
+    std::promise<void> begun;
+    const auto running =
+        jobs.add(request(), [&begun](const Request& r) { return endless(begun, r); });
+    const auto waiting = jobs.add(request(), answer);
+    std::vector<int> told;
+    const Jobs::Heir heir = [&told](int status) { told.push_back(status); };
+    jobs.when_ended(waiting->id, heir);
+    jobs.when_ended(running->id, heir);
+    jobs.when_ended("none", heir);
+    begun.get_future().wait();
+    EXPECT_TRUE(told.empty());
+    jobs.remove(waiting->id, kLong);
+    EXPECT_EQ(told, std::vector<int>{503}) << "it never began";
+    jobs.remove(running->id, kLong);
+    EXPECT_EQ(told.size(), 2U);
+    const auto done = jobs.add(request(), answer);
+    wait(jobs, done->id);
+    jobs.when_ended(done->id, heir);
+    EXPECT_EQ(told, (std::vector<int>{503, 503, 200})) << "at once where it has ended";
+}
+
+TEST_F(JobsTest, AreToldToStopBeforeTheyAreWaitedFor) {
+    Jobs jobs({.threads = 1});
+    std::promise<void> begun, may_end;
+    const auto blocked = jobs.add(request(), [&](const Request& r) {
+        begun.set_value();
+        may_end.get_future().wait();  // as for a session that a request has locked
+        return told_to_stop() ? refuse(r, api::ProblemType::Stopped, "Stopped.") : answer(r);
+    });
+    const auto waiting = jobs.add(request(), answer);
+    begun.get_future().wait();
+    jobs.stop();
+    EXPECT_EQ(state(jobs, blocked->id), JobState::Running);
+    EXPECT_EQ(state(jobs, waiting->id), JobState::Stopped);
+    EXPECT_FALSE(jobs.add(request(), answer));
+    may_end.set_value();
+    jobs.shut_down();
+    EXPECT_EQ(state(jobs, blocked->id), JobState::Stopped);
 }
 
 TEST_F(JobsTest, AreKeptForATime) {

@@ -44,6 +44,27 @@ TEST(KeptAnswers, LetsADroppedOneGoAgain) {
     EXPECT_TRUE(is<Response>(answers.begin({"", "key"}, "other"))) << "what is kept stays";
 }
 
+TEST(KeptAnswers, TakeBackWhatTurnedOutToBeNothing) {
+    KeptAnswers answers({});
+    do_once(answers, {"birth", "before"});
+    EXPECT_TRUE(is<KeptAnswers::GoOn>(answers.begin({"birth", "key"}, "print")));
+    const auto number = answers.keep({"birth", "key"}, answer("promised"));
+    do_once(answers, {"birth", "after"});
+    answers.take_back({"birth", "before"}, number);
+    EXPECT_EQ(answers.size(), 3U) << "the number is another's";
+    answers.take_back({"birth", "key"}, number);
+    EXPECT_EQ(answers.size(), 2U);
+    EXPECT_TRUE(is<KeptAnswers::GoOn>(answers.begin({"birth", "key"}, "print")));
+    answers.take_back({"birth", "key"}, number);
+    EXPECT_TRUE(is<KeptAnswers::StillRunning>(answers.begin({"birth", "key"}, "print")));
+    answers.keep({"birth", "key"}, answer("done"));
+    answers.take_back({"birth", "key"}, number);
+    EXPECT_EQ(std::get<Response>(answers.begin({"birth", "key"}, "print")).body, "done");
+    answers.forget("birth");
+    EXPECT_EQ(answers.size(), 0U);
+    EXPECT_EQ(answers.bytes(), 0U);
+}
+
 TEST(KeptAnswers, ForgetAfterADay) {
     KeptAnswers::Time now{};
     KeptAnswers answers({}, [&now] { return now; });

@@ -42,6 +42,60 @@ TEST(SessionVersions, KeepsVersionsWithinItsBytes) {
     EXPECT_TRUE(std::holds_alternative<core::Tin>(s.tin_at(gone.oldest, {})));
 }
 
+TEST(SessionVersions, SettlesLocksForNothing) {
+    HistoryLimits limits;
+    limits.bytes = 40'000;
+    Session s = make_session(limits);
+    for (int i = 0; i < 1500; ++i) {
+        LocksEdit edit;
+        edit.operation.shapes.push_back({{{{{0, 0}, {10, 0}}, false}}});
+        edit.operation.locked = i % 2 == 0;
+        ASSERT_TRUE(std::holds_alternative<LocksResult>(s.set_locks(std::move(edit), {})));
+    }
+    ASSERT_LE(s.view().memory_bytes, s.mesh_bytes() + limits.bytes);
+    int undone = 0;
+    while (std::holds_alternative<ChangeResult>(s.undo({})))
+        ++undone;
+    EXPECT_GT(undone, 5) << "what is settled takes nothing away";
+}
+
+TEST(SessionVersions, BoundsWhatChangesTell) {
+    HistoryLimits limits;
+    limits.bytes = 40'000;
+    Session s = make_session(limits);
+    ASSERT_TRUE(std::holds_alternative<PolygonResult>(s.integrate(square_edit(2, 6))));
+    // Undone and redone, nothing but the records of that becomes more.
+    for (int i = 0; i < 300; ++i) {
+        s.undo({});
+        s.redo({});
+        ASSERT_LE(s.view().memory_bytes, s.mesh_bytes() + limits.bytes);
+    }
+    const HistoryCopy history = s.history(0, 1);
+    EXPECT_GT(history.oldest, 300U);
+    EXPECT_LT(history.oldest + 5, history.version) << "some are kept";
+    EXPECT_TRUE(std::holds_alternative<VersionGone>(s.delta_since(history.oldest - 1)));
+    EXPECT_TRUE(std::holds_alternative<api::MeshDelta>(s.delta_since(history.oldest)));
+    EXPECT_TRUE(std::holds_alternative<core::Tin>(s.tin_at(history.oldest, {})));
+}
+
+TEST(SessionVersions, CountsTheLargestMeshOnTheWay) {
+    Session s = make_session();
+    const std::size_t small = s.mesh_bytes();
+    PolygonEdit edit;
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) {
+            const double x = 1 + i, y = 1 + j;
+            edit.shapes.push_back(
+                {{{{{x, y}, {x + 0.5, y}, {x + 0.5, y + 0.5}, {x, y + 0.5}}, true}}});
+        }
+    edit.origins.resize(edit.shapes.size());
+    ASSERT_TRUE(std::holds_alternative<PolygonResult>(s.integrate(std::move(edit))));
+    s.undo({});
+    ASSERT_LT(s.mesh_bytes(), 2 * small);
+    EXPECT_GT(s.mesh_bytes_since(2), 10 * sizeof(core::Tin::Triangle) * 8);
+    EXPECT_EQ(s.mesh_bytes_since(3), s.mesh_bytes());
+}
+
 TEST(SessionVersions, MakesAVersionAgainUnlessStopped) {
     Session s = make_session();
     s.integrate(square_edit(2, 6));

@@ -149,6 +149,21 @@ TEST_F(JobRoutes, AreOneForOneKey) {
     EXPECT_EQ(version_of(session), 2);
 }
 
+TEST_F(JobRoutes, AreAskedForAnewWhereNothingCameOfThem) {
+    const std::string session = make_session();
+    const NameValue key{"idempotency-key", "k"};
+    const Response failed =
+        post(session + "/polygons", kParcel, {key, kAsync, {"if-match", "\"x\""}});
+    EXPECT_EQ(job(finished(failed))["status"], 412);
+    const Response again = post(session + "/polygons", kParcel, {key, kAsync});
+    EXPECT_EQ(header(again, "Idempotency-Replayed"), "");
+    EXPECT_EQ(job(finished(again))["status"], 200);
+    EXPECT_EQ(version_of(session), 2);
+    const Response third = post(session + "/polygons", kParcel, {key, kAsync});
+    EXPECT_EQ(header(third, "Location"), header(again, "Location")) << "something came of it";
+    EXPECT_EQ(services.answers.size(), 1U);
+}
+
 TEST_F(JobRoutes, ComeInPages) {
     const std::string session = make_session();
     for (int i = 0; i < 5; ++i)
@@ -233,6 +248,21 @@ TEST_F(JobRoutes, RaceTheirDeletion) {
         EXPECT_TRUE(state == "done" || state == "stopped") << state;
         EXPECT_EQ(version_of(path), version) << state;
     }
+}
+
+TEST(LargeJobs, AreRefusedForGood) {
+    Limits limits;
+    limits.job_bytes = 100;
+    Services services{limits};
+    const Router router{make_routes(services)};
+    const Request request{
+        "POST", "/v1/sessions", {}, {kAsync, {"content-type", "application/json"}}, kSquare,
+        {},     "test"};
+    const Response refused = router.handle(request);
+    EXPECT_EQ(refused.status, 503);
+    EXPECT_NE(refused.body.find("job_bytes"), std::string::npos);
+    EXPECT_TRUE(std::ranges::none_of(
+        refused.headers, [](const NameValue& header) { return header.first == "Retry-After"; }));
 }
 
 /// A server with room for one job.
