@@ -310,7 +310,7 @@ TEST(RegionEdit, TellsItsProgress) {
         EditLimits limits;
         limits.progress = [&told](double share) { told.push_back(share); };
         ASSERT_TRUE(edit_region(tin, pad.outline(), Winding::EvenOdd, any, limits).ok());
-        EXPECT_GE(told.size(), 4U);
+        EXPECT_GE(told.size(), 2U);
         EXPECT_TRUE(std::ranges::is_sorted(told));
         EXPECT_GE(told.back(), 0.5);
         EXPECT_LE(told.back(), 1.0);
