@@ -149,6 +149,7 @@ part_node() {
 
 part_sanitizers() {
     export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
+    export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
     export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1
     build asan-ubsan && run_ctest asan-ubsan --label-exclude '^arch$'
     # Threads meet in the server only. GCC 12's runtime cannot place its shadow under the widest
