@@ -96,10 +96,9 @@ void Removal::name_all() {
                 gone_ends_.push_back({tin_.name(end), tin_.plan(end)});
         }
     }
-    const auto name_of = [](const GoneEnd& end) { return end.name; };
-    std::ranges::sort(gone_ends_, {}, name_of);
-    const auto twice = std::ranges::unique(gone_ends_, {}, name_of);
-    gone_ends_.erase(twice.begin(), twice.end());
+    std::ranges::sort(gone_ends_, {}, &GoneEnd::name);
+    const auto is_same = [](const GoneEnd& l, const GoneEnd& r) { return l.name == r.name; };
+    gone_ends_.erase(std::unique(gone_ends_.begin(), gone_ends_.end(), is_same), gone_ends_.end());
 }
 
 void Removal::part_fans() {

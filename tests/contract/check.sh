@@ -6,7 +6,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
-known=$(ctest --preset "$1" --show-only | sed -nE 's/^ *Test +#[0-9]+: //p')
+# Of one with parameters, PREFIX/Suite.Test/PARAMETER, the name alone.
+known=$(ctest --preset "$1" --show-only |
+    sed -nE 's/^ *Test +#[0-9]+: //p' | sed -E 's|^[A-Za-z]+/([A-Za-z]+\.[A-Za-z]+)/.*|\1|')
 # The last cell of each row, and the tests that provoke what one polite client cannot.
 named=$({
     grep '^| ' tests/contract.md | grep -vE '^\| Promise' | sed -E 's/^.*\|([^|]*)\|$/\1/' | grep -oE '`[^`]+`' | tr -d '`'
