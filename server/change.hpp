@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -23,6 +25,19 @@ struct ChangeRequest {
     bool want_delta = false;
     RunLimits limits = {};  ///< of what has to be run again
 };
+
+/// Whether a request that expects a version, if it does, expects this one.
+template <typename Asked>
+bool is_expected(const Asked& asked, std::uint64_t version) {
+    return !asked.expected_version || *asked.expected_version == version;
+}
+
+/// The limits of a run, tightened to what a mesh of `triangles` may still grow by.
+inline RunLimits tightened(RunLimits limits, std::size_t triangles, std::size_t max_triangles) {
+    const std::size_t room = max_triangles - std::min(max_triangles, triangles);
+    limits.max_new_triangles = std::min<std::uint64_t>(limits.max_new_triangles, room);
+    return limits;
+}
 
 /// How a version came about, copied out.
 struct ChangeCopy {

@@ -22,15 +22,13 @@ std::vector<std::string> new_ids(std::uint64_t first, std::size_t count) {
 
 /// The caller's budget, tightened to what the session may still grow by.
 RunLimits limits_of(const PolygonEdit& edit, const core::Tin& tin) {
-    const std::size_t room =
-        edit.max_triangles - std::min(edit.max_triangles, tin.triangle_count());
     RunLimits limits;
     limits.cancelled = edit.options.cancelled;
     limits.clock_ms = edit.options.clock_ms;
     limits.progress = edit.options.progress;
     limits.max_crossings = edit.options.max_crossings;
-    limits.max_new_triangles = std::min<std::uint64_t>(edit.options.max_new_triangles, room);
-    return limits;
+    limits.max_new_triangles = edit.options.max_new_triangles;
+    return tightened(std::move(limits), tin.triangle_count(), edit.max_triangles);
 }
 
 /// The edit as it is kept. Its budgets stay behind.
@@ -45,10 +43,6 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
     return std::make_shared<const Operation>(
         PolygonsOperation{std::move(edit.shapes), std::move(edit.origins), std::move(ids),
                           edit.winding, std::move(options)});
-}
-
-bool is_expected(const PolygonEdit& edit, std::uint64_t version) {
-    return !edit.expected_version || *edit.expected_version == version;
 }
 
 }  // namespace

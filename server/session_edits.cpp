@@ -1,28 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A session's edits of what is inside its polygons.
-#include <algorithm>
 #include <utility>
 
 #include "server/session.hpp"
 
 namespace tinsmith::server {
-
-namespace {
-
-bool is_expected(const PendingEdit& edit, std::uint64_t version) {
-    return !edit.expected_version || *edit.expected_version == version;
-}
-
-/// The caller's budget, tightened to what the session may still grow by.
-RunLimits limits_of(const PendingEdit& edit, const core::Tin& tin) {
-    RunLimits limits = edit.limits;
-    const std::size_t room =
-        edit.max_triangles - std::min(edit.max_triangles, tin.triangle_count());
-    limits.max_new_triangles = std::min<std::uint64_t>(limits.max_new_triangles, room);
-    return limits;
-}
-
-}  // namespace
 
 EditOutcome Session::edit(PendingEdit edit) {
     if (edit.dry_run) return edit_dry(edit);
@@ -31,7 +13,7 @@ EditOutcome Session::edit(PendingEdit edit) {
     if (!is_expected(edit, before)) return VersionMismatch{before};
     const std::string polygon = edit.operation.asked.polygon;
     if (!polygon_finder()(polygon)) return PolygonFault::NotThere;
-    const RunLimits limits = limits_of(edit, tin_);
+    const RunLimits limits = tightened(edit.limits, tin_.triangle_count(), edit.max_triangles);
     const auto applied = perform(std::make_shared<const Operation>(std::move(edit.operation)),
                                  ChangeKind::Edit, {polygon}, limits);
     if (!applied) return applied.errors();
@@ -54,7 +36,7 @@ EditOutcome Session::edit_dry(const PendingEdit& edit) const {
     const core::Winding winding = found->request.winding;
     core::Tin trial = tin_;
     lock.unlock();
-    const RunLimits limits = limits_of(edit, trial);
+    const RunLimits limits = tightened(edit.limits, trial.triangle_count(), edit.max_triangles);
     auto report =
         core::edit_region(trial, {shape, own.chains, own.outside}, winding, edit.operation.edit,
                           {limits.max_crossings,

@@ -53,10 +53,6 @@ std::size_t place_of(const std::vector<AppliedPtr>& list, std::string_view id) {
     return static_cast<std::size_t>(found - list.begin());
 }
 
-bool is_expected(const ChangeRequest& request, std::uint64_t version) {
-    return !request.expected_version || *request.expected_version == version;
-}
-
 }  // namespace
 
 struct Session::Replacement {

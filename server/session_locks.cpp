@@ -6,14 +6,6 @@
 
 namespace tinsmith::server {
 
-namespace {
-
-bool is_expected(const LocksEdit& edit, std::uint64_t version) {
-    return !edit.expected_version || *edit.expected_version == version;
-}
-
-}  // namespace
-
 LocksOutcome Session::set_locks(LocksEdit edit, RunLimits limits) {
     limits.must_find = true;
     if (edit.dry_run) return lock_dry(edit, limits);
