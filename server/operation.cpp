@@ -8,6 +8,14 @@
 
 namespace tinsmith::server {
 
+std::size_t held_bytes(const core::Shape& shape) {
+    std::size_t sum = sizeof shape;
+    for (const core::Path& path : shape.paths)
+        sum += sizeof path + path.points.size() * sizeof(core::Point2) +
+               path.elevations.size() * sizeof(double);
+    return sum;
+}
+
 std::size_t held_bytes(const core::ShapeReport& report) {
     std::size_t sum = sizeof report;
     for (const core::Chain& chain : report.chains)
@@ -34,28 +42,20 @@ std::size_t held_bytes(const SlotChanges& written) {
 
 namespace {
 
-std::size_t bytes_of(const core::Shape& shape) {
-    std::size_t sum = 0;
-    for (const core::Path& path : shape.paths)
-        sum += sizeof path + path.points.size() * sizeof(core::Point2) +
-               path.elevations.size() * sizeof(double);
-    return sum;
-}
-
 /// About what one shape of a request holds in memory, its part of the report with it.
 std::size_t bytes_of(const PolygonsOperation& operation, const core::Report& report,
                      std::size_t shape) {
     const PolygonOrigin& origin = operation.origins[shape];
-    std::size_t sum = sizeof(core::Shape) + sizeof origin + origin.properties.size() +
-                      origin.client_id.size() + origin.polygon_starts.size() * sizeof(std::size_t);
-    return sum + bytes_of(operation.shapes[shape]) + held_bytes(report.shapes[shape]);
+    std::size_t sum = sizeof origin + origin.properties.size() + origin.client_id.size() +
+                      origin.polygon_starts.size() * sizeof(std::size_t);
+    return sum + held_bytes(operation.shapes[shape]) + held_bytes(report.shapes[shape]);
 }
 
 std::size_t bytes_of(const EditOperation& operation) {
     std::size_t sum = sizeof operation + sizeof(api::EditAnswer) + operation.asked.polygon.size();
     const auto* raised = std::get_if<core::ElevationEdit>(&operation.edit);
     if (raised != nullptr && raised->strip)
-        sum += bytes_of(raised->strip->ring) + bytes_of(raised->strip->border);
+        sum += held_bytes(raised->strip->ring) + held_bytes(raised->strip->border);
     return sum;
 }
 
@@ -111,10 +111,8 @@ core::Result<AppliedPtr> run_kind(core::Tin& tin, const PolygonsOperation& polyg
 
 std::size_t bytes_of(const LocksOperation& operation, const LocksDone& done) {
     std::size_t sum = sizeof operation + held_bytes(done);
-    for (const core::Shape& shape : operation.shapes) {
-        for (const core::Path& path : shape.paths)
-            sum += sizeof path + path.points.size() * sizeof(core::Point2);
-    }
+    for (const core::Shape& shape : operation.shapes)
+        sum += held_bytes(shape);
     return sum;
 }
 

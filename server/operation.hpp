@@ -81,6 +81,7 @@ struct Remainder {
 Remainder without_polygon(const OperationPtr& operation, std::string_view id);
 
 /// About what these hold in memory.
+std::size_t held_bytes(const core::Shape& shape);
 std::size_t held_bytes(const core::ShapeReport& report);
 std::size_t held_bytes(const LocksDone& done);
 std::size_t held_bytes(const SlotChanges& written);

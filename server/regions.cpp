@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/regions/constraint_history.hpp"
+#include "server/operation.hpp"
 #include "server/polygon_groups.hpp"
 
 namespace tinsmith::server {
@@ -259,14 +260,10 @@ std::size_t region_bytes(const core::Tin& tin, std::span<const Polygon> all) {
     std::size_t sum = tin.triangle_count() * sizeof(PolygonGroups::Id) +
                       tin.constraint_splits().size() * (kOfASplit + kOfAnEdge);
     for (const Polygon& polygon : all) {
-        sum += sizeof(RegionGround::Drawn);
-        for (const core::Path& path : polygon.outline().paths)
-            sum += sizeof path + path.points.size() * sizeof(core::Point2) +
-                   path.elevations.size() * sizeof(double);
+        sum += sizeof(RegionGround::Drawn) + held_bytes(polygon.outline()) +
+               held_bytes(polygon.own_report());
         for (const core::Chain& chain : polygon.own_report().chains)
-            sum += sizeof chain + chain.vertices.size() * (sizeof(core::VertexId) + kOfAnEdge);
-        for (const core::OutsidePart& part : polygon.own_report().outside)
-            sum += sizeof part + part.points.size() * sizeof(core::Point2);
+            sum += chain.vertices.size() * kOfAnEdge;
     }
     return sum;
 }
