@@ -19,6 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kProblems = "x-problems";
+/// Of an operation that hands on what others answered: any refusal of a status that it has itself.
+constexpr const char* kRelays = "x-relays";
 constexpr const char* kAnswers = "x-answers";
 constexpr const char* kAnswerHeaders = "x-answer-headers";
 constexpr const char* kRecorded = "x-recorded";
@@ -71,6 +73,8 @@ class Operation {
         for (const char* name : kRequestHeaders)
             operation_["parameters"].push_back(reference(std::string("parameters/") + name));
         operation_.erase(kProblems);
+        if (operation_.value(kRelays, false)) add_all_of_these_statuses();
+        operation_.erase(kRelays);
         // Answers come last, whatever was added before.
         Json answers = std::move(operation_["responses"]);
         operation_.erase("responses");
@@ -112,6 +116,12 @@ class Operation {
             const ProblemType type = problem_of_word(word.get<std::string>());
             words_[problem_status(type)].insert(type);
         }
+    }
+
+    void add_all_of_these_statuses() {
+        for (auto& [status, words] : words_)
+            for (const ProblemType type : all_problems())
+                if (problem_status(type) == status) words.insert(type);
     }
 
     Json with_headers(Json answer) const {
