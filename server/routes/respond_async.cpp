@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/respond_async.hpp"
 
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "api/field_list.hpp"
@@ -27,22 +29,48 @@ bool prefers_a_job(const Request& request) {
     return false;
 }
 
+/// Whether the session that a job was asked of gave way to another of its id. One that is just gone
+/// is the handler's to tell.
+bool is_another(const Services& services, const PathArguments& arguments,
+                const std::string& birth) {
+    if (birth.empty()) return false;
+    const auto session = services.sessions.find(arguments[0]);
+    return session && session->facts().birth != birth;
+}
+
+Response refuse_successor(const Request& request, const std::string& id) {
+    return refuse(request, api::ProblemType::NoSuchSession,
+                  "The session \"" + id.substr(0, 64) +
+                      "\" was deleted before the job began, and another was made under its id: "
+                      "nothing was changed. Ask again if that one is meant.");
+}
+
 }  // namespace
 
 Handler deferrable(Services& services, Handler handler, Names names) {
     return [&services, names, handler = std::move(handler)](const Request& request,
                                                             const PathArguments& arguments) {
-        const bool is_nowhere =
-            names == Names::Session && !arguments.empty() && !services.sessions.find(arguments[0]);
-        if (is_nowhere || !prefers_a_job(request)) return handler(request, arguments);
+        std::shared_ptr<Session> session;
+        if (names == Names::Session && !arguments.empty()) {
+            session = services.sessions.find(arguments[0]);
+            if (!session) return handler(request, arguments);
+        }
+        if (!prefers_a_job(request)) return handler(request, arguments);
         if (!services.jobs.is_small_enough(request)) {
             return refuse(request, api::ProblemType::TooManyJobs,
                           "The request is larger than all jobs together may be (job_bytes of GET "
                           "/v1/limits); nothing was begun. Ask without Prefer: respond-async.");
         }
-        const auto job = services.jobs.add(request, [handler, arguments](const Request& asked) {
-            return answer_safely(asked, [&] { return handler(asked, arguments); });
-        });
+        const std::string birth = session ? session->facts().birth : std::string();
+        session.reset();  // a job that waits keeps none alive
+        const auto job = services.jobs.add(
+            request, [&services, handler, arguments, birth](const Request& asked) {
+                return answer_safely(asked, [&] {
+                    return is_another(services, arguments, birth)
+                               ? refuse_successor(asked, arguments[0])
+                               : handler(asked, arguments);
+                });
+            });
         if (!job) {
             return refuse(request, api::ProblemType::TooManyJobs,
                           "The server has as many jobs as it takes; nothing was begun. Ask again "

@@ -2,6 +2,7 @@
 // Prefer: respond-async, as a client meets it.
 #include <atomic>
 #include <cmath>
+#include <future>
 #include <thread>
 
 #include "server/log.hpp"
@@ -263,6 +264,30 @@ TEST(LargeJobs, AreRefusedForGood) {
     EXPECT_NE(refused.body.find("job_bytes"), std::string::npos);
     EXPECT_TRUE(std::ranges::none_of(
         refused.headers, [](const NameValue& header) { return header.first == "Retry-After"; }));
+}
+
+TEST_F(JobRoutes, AreNotDoneToASessionThatTookThePlaceOfTheirs) {
+    const std::string session = "/v1/sessions/mine";
+    const auto make = [&] {
+        return ask("PUT", session, {{"content-type", "application/json"}}, kSquare).status;
+    };
+    ASSERT_EQ(make(), 201);
+    std::promise<void> gate;
+    const std::shared_future<void> opened = gate.get_future().share();
+    for (std::size_t i = 0; i < Jobs::Bounds{}.threads; ++i) {
+        ASSERT_TRUE(services.jobs.add({}, [opened](const Request&) {
+            opened.wait();
+            return Response{};
+        }));
+    }
+    const Response waiting = post(session + "/polygons", kParcel, {kAsync});
+    EXPECT_EQ(ask("DELETE", session).status, 200);
+    ASSERT_EQ(make(), 201);
+    gate.set_value();
+    const std::string where = finished(waiting);
+    EXPECT_EQ(job(where)["status"], 404);
+    EXPECT_EQ(told(ask("GET", where + "/result")), "no-such-session");
+    EXPECT_EQ(version_of(session), 1);
 }
 
 /// A server with room for one job.
