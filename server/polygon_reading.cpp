@@ -110,25 +110,24 @@ api::Faults faults_of(const core::Errors& errors, const std::vector<api::Request
     return faults;
 }
 
-void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping) {
+RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping) {
     const auto start = Clock::now();
-    edit.max_triangles = limits.max_triangles;
-    edit.options.max_crossings = limits.max_crossings;
-    edit.options.clock_ms = [start] {
+    RunLimits run;
+    run.cancelled = deadline(limits, stopping);
+    run.clock_ms = [start] {
         return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     };
-    edit.options.cancelled = deadline(limits, stopping);
-    edit.options.progress = stage_progress();
+    run.progress = stage_progress();
+    return run;
 }
 
-RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping) {
-    PolygonEdit edit;
-    set_budgets(edit, limits, stopping);
-    RunLimits run;
-    run.cancelled = std::move(edit.options.cancelled);
-    run.clock_ms = std::move(edit.options.clock_ms);
-    run.progress = std::move(edit.options.progress);
-    return run;
+void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping) {
+    RunLimits run = rerun_limits(limits, stopping);
+    edit.max_triangles = limits.max_triangles;
+    edit.options.max_crossings = limits.max_crossings;
+    edit.options.clock_ms = std::move(run.clock_ms);
+    edit.options.cancelled = std::move(run.cancelled);
+    edit.options.progress = std::move(run.progress);
 }
 
 }  // namespace tinsmith::server

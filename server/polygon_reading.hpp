@@ -38,12 +38,12 @@ std::optional<api::Fault> crs_fault(const PolygonWork& work, const std::string& 
 /// What the core refused, in the places of the body. One fault for each error.
 api::Faults faults_of(const core::Errors& errors, const std::vector<api::RequestedShape>& shapes);
 
-/// Gives the edit its budgets, its clock and its end: a deadline from now, or `stopping`.
-/// Requires: `stopping` outlives the edit.
-void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping);
-
-/// The same for operations that are run again: a clock and an end, but no budget that could
-/// refuse what was granted once.
+/// Of operations that are run again: a clock, progress and an end, which is a deadline from now, or
+/// `stopping`; but no budget that could refuse what was granted once.
+/// Requires: `stopping` outlives the work.
 RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping);
+
+/// Gives the edit the same, and its budgets.
+void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping);
 
 }  // namespace tinsmith::server

@@ -12,6 +12,7 @@
 #include "server/routes/handlers.hpp"
 #include "server/routes/paging.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
@@ -41,6 +42,7 @@ Step<Asked> require_change(Services& services, const Request& request, const std
     if (auto refusal = refusal_of_blind_edit(services, request, *asked.session)) return *refusal;
     asked.change.expected_version = std::get<0>(expected);
     asked.change.want_delta = std::get<0>(type) == 1;
+    begin_stage(1.0);
     asked.change.limits = rerun_limits(services.limits, services.stopping);
     return asked;
 }
