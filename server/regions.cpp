@@ -75,7 +75,7 @@ class Allowance {
                 core::Error{core::ErrorCode::CrossingBudget,
                             "the regions have more than " + std::to_string(limits_.max_visits) +
                                 " triangles and edges together with those of the polygons "
-                                "near them; ask for fewer at a time",
+                                "near them; ask for fewer at a time, or have max_crossings raised",
                             {}};
             return false;
         }
