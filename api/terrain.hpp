@@ -7,6 +7,16 @@
 
 namespace tinsmith::api {
 
+/// How a terrain's bytes are to be taken. What they say themselves comes first; where that and an
+/// option contradict each other, the terrain is refused.
+struct TerrainOptions {
+    bool repair = false;  ///< mend what can be mended safely, and tell each repair
+    double weld = 0.0;    ///< with `repair`: vertices no farther apart in plan become one
+    std::string project;  ///< degrees: "auto" or the system to warp to; empty: refuse them
+    std::string crs;      ///< "EPSG:32616"; empty: what the bytes say
+    std::string unit;     ///< "metre"; empty: what the bytes or the system say
+};
+
 /// A terrain as any reader delivers it: mesh buffers and what is known of their coordinates.
 struct Terrain {
     core::MeshData mesh;

@@ -23,7 +23,7 @@ std::string load_demo(Services& services, const std::string& path) {
     std::string error;
     const auto bytes = read_file(path, error);
     if (!bytes) return error;
-    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), services.read_limits());
+    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), {}, services.read_limits());
     if (!terrain) return path + ": " + terrain.faults().front().detail;
     if (path == bundled_terrain()) terrain->about.name = "Jacksboro fault";
     const auto added = services.sessions.add(std::move(terrain->tin), terrain->about, "demo");

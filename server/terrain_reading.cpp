@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/terrain_reading.hpp"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "api/formats/geotiff.hpp"
@@ -28,6 +30,32 @@ api::Fault fault_of(const core::Error& error, TerrainFormat format) {
     return fault;
 }
 
+/// One format: what it is called, and who reads it.
+struct Reader {
+    TerrainFormat format;
+    std::span<const std::string_view> media_types;
+    api::Parsed<api::Terrain> (*read)(std::string_view bytes, const api::TerrainOptions& options,
+                                      const api::ReadLimits& limits);
+};
+
+constexpr std::string_view kJsonTypes[] = {"application/json"};
+constexpr std::string_view kTiffTypes[] = {"image/tiff", "image/geotiff"};
+
+constexpr Reader kReaders[] = {
+    {TerrainFormat::Json, kJsonTypes,
+     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
+         return api::read_terrain_json(bytes, limits);
+     }},
+    {TerrainFormat::GeoTiff, kTiffTypes,
+     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
+         return api::read_geotiff(bytes, limits);
+     }},
+};
+
+const Reader& reader_of(TerrainFormat format) {
+    return *std::ranges::find(kReaders, format, &Reader::format);
+}
+
 }  // namespace
 
 TerrainFormat terrain_format_of(std::string_view bytes) {
@@ -39,16 +67,17 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
 }
 
 std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
-    if (media_type == "application/json") return TerrainFormat::Json;
-    if (media_type == "image/tiff" || media_type == "image/geotiff") return TerrainFormat::GeoTiff;
+    for (const Reader& reader : kReaders)
+        if (std::ranges::find(reader.media_types, media_type) != reader.media_types.end())
+            return reader.format;
     return std::nullopt;
 }
 
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
+                                        const api::TerrainOptions& options,
                                         const api::ReadLimits& limits) {
     begin_stage(0.4);
-    auto terrain = format == TerrainFormat::GeoTiff ? api::read_geotiff(bytes, limits)
-                                                    : api::read_terrain_json(bytes, limits);
+    auto terrain = reader_of(format).read(bytes, options, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
     auto tin = core::build_tin(terrain->mesh);

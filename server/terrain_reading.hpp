@@ -30,6 +30,7 @@ struct LoadedTerrain {
 /// Reads and builds in one go, the same for requests, the demo and the command line. Faults of the
 /// mesh come back in the body's own places.
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
+                                        const api::TerrainOptions& options,
                                         const api::ReadLimits& limits);
 
 }  // namespace tinsmith::server

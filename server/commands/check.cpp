@@ -17,7 +17,7 @@ int run_check(const CheckConfig& config) {
         complain(error);
         return kExitRefused;
     }
-    const auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), {});
+    const auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), {}, {});
     if (!terrain) {
         complain(config.mesh, terrain.faults());
         return kExitRefused;

@@ -40,7 +40,7 @@ std::optional<LoadedTerrain> read_terrain(const std::string& path, const Service
         complain(error);
         return std::nullopt;
     }
-    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), services.read_limits());
+    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), {}, services.read_limits());
     if (!terrain) {
         bar.clear();
         complain(path, terrain.faults());

@@ -98,7 +98,7 @@ std::optional<LoadedTerrain> read_terrain(const Services& services, const api::F
                      {}}});
         return std::nullopt;
     }
-    auto terrain = load_terrain(part.body, *format, services.read_limits());
+    auto terrain = load_terrain(part.body, *format, {}, services.read_limits());
     if (terrain) return std::move(*terrain);
     faults.add(terrain.kind(), kTerrain, std::move(terrain.faults()));
     return std::nullopt;

@@ -58,7 +58,7 @@ Response tell_created(const Session& session) {
 Response make_session(Services& services, const Request& request, std::optional<std::string> id) {
     const auto format = require_terrain_format(request);
     if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
-    auto terrain = load_terrain(request.body, std::get<0>(format), services.read_limits());
+    auto terrain = load_terrain(request.body, std::get<0>(format), {}, services.read_limits());
     if (!terrain) {
         return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
     }
