@@ -57,8 +57,12 @@ class Drift {
     /// A new vertex took its elevation from others, of which the deepest is given.
     void nest(VertexId v, std::uint32_t below) {
         const std::size_t i = v.index() - first_;
-        if (i >= nesting_.size()) nesting_.resize(i + 1);
-        nesting_[i] = below + 1;
+        if (i == nesting_.size()) {
+            nesting_.push_back(below + 1);
+        } else {
+            if (i > nesting_.size()) nesting_.resize(i + 1);
+            nesting_[i] = below + 1;
+        }
         deepest_ = std::max(deepest_, below + 1);
     }
     std::uint32_t deepest() const { return deepest_; }

@@ -50,6 +50,7 @@ bool March::begin(std::size_t index, const Path& path, const Way& way) {
     path_index_ = index;
     exit_ahead_ = {};
     from_ = to_ = 0;
+    steps_ = 0;
     const Point2 start = path.points.front();
     start_ = end_ = start;
     at_ = {};
@@ -67,13 +68,13 @@ bool March::begin(std::size_t index, const Path& path, const Way& way) {
     if (location.kind == Location::Kind::Outside) {
         at_ = {};
         outside_.push_back(start);
-        return within_limits();
+        return look_at_limits();
     }
     tally_.met_mesh = true;
     tally_.chains.push_back({path_index_, {}});
     stand_on(settle(location, start));
     first_ = at_;
-    return within_limits();
+    return look_at_limits();
 }
 
 /// Makes all points of the path that are on the mesh vertices before any segment is there.
@@ -194,7 +195,7 @@ bool March::finish() {
     if (!at_.valid()) close_outside();
     flush_open();
     at_ = {};
-    return done && within_limits();
+    return done && within_budget();
 }
 
 /// Goes along an edge to its far end, or to the segment's end where that comes first.
@@ -271,41 +272,52 @@ bool March::is_as_promised() {
                 "distance; move it a little");
 }
 
-bool March::within_budget() {
+/// Looks at all limits, and for how many steps none of them can be passed.
+bool March::look_at_limits() {
     // A straight way meets each triangle once; the rest is room for what rounding repeats.
-    if (++steps_ > 4 * tin_.triangle_count() + 1024)
+    const std::uint64_t most_steps = 4 * tin_.triangle_count() + 1024;
+    if (steps_ >= most_steps)
         return fail(ErrorCode::StepBudget,
                     "a defect of the program, not of the request: the march did not end within its "
                     "budget of steps; nothing was changed; report it with the request");
-    return within_limits();
-}
-
-/// Asked before each step, which makes a few triangles at most.
-bool March::has_ids() {
-    constexpr std::size_t kOfAStep = 16;
-    if (tin_.triangle_count() + kOfAStep > options_.ids.triangles ||
-        std::max(tin_.vertex_count(), tin_.name_count()) + kOfAStep > options_.ids.vertices)
-        return fail(ErrorCode::IdBudget,
-                    "the mesh has as many triangles or vertices as can be numbered; nothing was "
-                    "changed; divide the terrain");
-    return true;
-}
-
-bool March::within_limits() {
     if (!has_ids()) return false;
-    if (tally_.crossings + tally_.self_crossings > limits_.max_crossings)
+    const std::uint64_t crossings = tally_.crossings + tally_.self_crossings;
+    if (crossings > limits_.max_crossings)
         return fail(ErrorCode::CrossingBudget,
                     "the request crosses more edges than allowed; send it in parts");
-    if (tin_.triangle_count() - surgery_.record().triangle_count > limits_.max_new_triangles)
+    const std::uint64_t triangles = tin_.triangle_count() - surgery_.record().triangle_count;
+    if (triangles > limits_.max_new_triangles)
         return fail(ErrorCode::TriangleBudget,
                     "the request makes more triangles than allowed; send it in parts");
     constexpr std::uint64_t kAskEvery = 256;
-    if (asked_++ % kAskEvery != 0) return true;
+    covered_ = std::min({kAskEvery - 1, most_steps - steps_ - 1,
+                         (limits_.max_crossings - crossings) / kMostOfAStep,
+                         (limits_.max_new_triangles - triangles) / kMostOfAStep, ids_left() - 1});
+    steps_ += covered_ + 1;
+    const bool asks = asked_ >= kAskEvery;
+    asked_ = (asks ? 0 : asked_) + covered_ + 1;
+    if (!asks) return true;
     if (limits_.progress != nullptr && limits_.progress->is_asked_for())
         limits_.progress->tell(at_.valid() ? share_along(tin_.plan(at_)) : 0.0);
     if (limits_.cancelled != nullptr && *limits_.cancelled && (*limits_.cancelled)())
         return fail(ErrorCode::Cancelled, "the request was cancelled; nothing was changed");
     return true;
+}
+
+/// For how many steps there are ids.
+std::uint64_t March::ids_left() const {
+    const auto left = [](std::size_t most, std::size_t used) {
+        return most < used ? 0 : (most - used) / kMostOfAStep;
+    };
+    return std::min(left(options_.ids.triangles, tin_.triangle_count()),
+                    left(options_.ids.vertices, std::max(tin_.vertex_count(), tin_.name_count())));
+}
+
+bool March::has_ids() {
+    if (ids_left() > 0) return true;
+    return fail(ErrorCode::IdBudget,
+                "the mesh has as many triangles or vertices as can be numbered; nothing was "
+                "changed; divide the terrain");
 }
 
 bool March::fail(ErrorCode code, const char* detail) {

@@ -113,8 +113,14 @@ class March {
     bool follow(const Departure& departure);
     bool cross(Side exit);
     bool reach(VertexId t, bool needs_swaps);
-    bool within_budget();
-    bool within_limits();
+    /// Asked before each step. False: stopped, see `error`.
+    bool within_budget() {
+        if (covered_ == 0) return look_at_limits();
+        --covered_;
+        return true;
+    }
+    bool look_at_limits();
+    std::uint64_t ids_left() const;
     bool has_ids();
     bool fail(ErrorCode code, const char* detail);
 
@@ -250,8 +256,10 @@ class March {
     TriangleId open_entered_;
     TriangleId open_other_;
     double length_ = 0.0;
-    std::uint64_t steps_ = 0;
-    std::uint64_t asked_ = 0;  ///< how often the limits were looked at
+    std::uint64_t steps_ = 0;    ///< of this segment, those that are covered among them
+    std::uint64_t covered_ = 0;  ///< so many steps can pass no limit
+    std::uint64_t asked_ = 256;  ///< steps since the caller was asked whether to go on
+    static constexpr std::uint64_t kMostOfAStep = 16;  ///< triangles, vertices, crossings
     static constexpr unsigned kMaxAbsorbed = 8;
     VertexId absorbed_at_;  ///< where the march last absorbed needles, and how many there
     unsigned absorbed_ = 0;

@@ -2,7 +2,10 @@
 #include "core/integrate/measure.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,8 +27,8 @@ class Lowest {
     /// What is not below it is of no interest any more.
     double bound() const { return bound_; }
 
-    /// Counts a triangle whose value is not below the bound.
-    void pass_over() { ++count_; }
+    /// Counts triangles whose values are not below the bound.
+    void pass_over(std::size_t triangles) { count_ += triangles; }
 
     void add(const TriangleShape& shape) {
         ++count_;
@@ -132,22 +135,12 @@ class PlanGlance {
     double longest_squared_;
 };
 
-/// Whether only a neighbour's link changed. One comparison, for nobody can guess each of four.
+/// Whether only a neighbour's link changed. One comparison, for nobody can foresee each of four.
 bool is_same_piece(const Tin::Triangle& old, const Tin::Triangle& now) {
     return ((old.vertices[0].value ^ now.vertices[0].value) |
             (old.vertices[1].value ^ now.vertices[1].value) |
             (old.vertices[2].value ^ now.vertices[2].value) |
             (old.facet.value ^ now.facet.value)) == 0;
-}
-
-/// Asks for what comes a few triangles later: the record names old triangles in the order in which
-/// they were met, and they may have left the cache since.
-void fetch_ahead(const Tin& tin, const UndoRecord& record, std::size_t i) {
-    constexpr std::size_t kTriangles = 16, kVertices = 8;
-    if (i + kTriangles >= record.triangles.size()) return;
-    __builtin_prefetch(&tin.triangle(record.triangles[i + kTriangles].first));
-    for (const VertexId v : record.triangles[i + kVertices].second.vertices)
-        __builtin_prefetch(&tin.vertex(v));
 }
 
 /// Vertices that the operation moved up or down, with the elevations they had, in order.
@@ -162,86 +155,172 @@ std::vector<std::pair<VertexId, double>> moved_vertices(const Tin& tin, const Un
     return moved;
 }
 
+/// Triangles are glanced at some at a time, without a branch: what a glance costs is the way to
+/// memory, and the processor asks ahead only as far as it can foresee the way. Each has a bit of a
+/// mask; what a glance does not pass over is looked at afterwards. Bounds may be older than that:
+/// then more is looked at than need be, never less.
+using Mask = std::uint64_t;
+constexpr std::size_t kBlock = 64;
+
+std::size_t count_of(Mask mask) {
+    return static_cast<std::size_t>(std::popcount(mask));
+}
+
+template <typename Visit>
+void for_each_bit(Mask mask, Visit visit) {
+    for (; mask != 0; mask &= mask - 1)
+        visit(static_cast<std::size_t>(std::countr_zero(mask)));
+}
+
+/// What an operation's triangles are like, before it and after it.
+class Survey {
+  public:
+    Survey(const Tin& tin, const Touched& touched)
+        : tin_(tin), moved_(moved_vertices(tin, touched.march)), most_(most_of(touched)) {}
+
+    /// A triangle as it was; as it is now, where it is another one.
+    void add(std::span<const std::pair<TriangleId, Tin::Triangle>> old) {
+        for (std::size_t i = 0; i < old.size(); i += kBlock)
+            add_block(old.subspan(i), std::min(kBlock, old.size() - i));
+    }
+
+    /// New triangles, by slot. They lie in old facets that were added before.
+    void add_new(std::size_t begin, std::size_t end, bool is_flat_enough) {
+        for (std::size_t t = begin; t < end; t += kBlock)
+            add_new_block(t, std::min(kBlock, end - t), is_flat_enough);
+    }
+
+    bool moved_any() const { return !moved_.empty(); }
+
+    Measurement result() {
+        Measurement result;
+        result.steepest_slope = std::sqrt(steepest_);
+        result.met_divided_facets = newest_ >= tin_.built_vertex_count();
+        result.smallest_angle_deg = {angle_degrees(before_.least()), angle_degrees(after_.least()),
+                                     angle_degrees(before_.percentile()),
+                                     angle_degrees(after_.percentile())};
+        return result;
+    }
+
+  private:
+    static std::size_t most_of(const Touched& touched) {
+        return touched.march.triangles.size() + touched.triangle_end -
+               touched.march.triangle_count +
+               (touched.across != nullptr ? touched.across->triangles.size() : 0);
+    }
+
+    /// Asks for what comes a few triangles later: the record names old ones in the order in which
+    /// they were met, and they may have left the cache since. Inlined, for a call that only asks is
+    /// optimized away.
+    [[gnu::always_inline]] void fetch_ahead(
+        std::span<const std::pair<TriangleId, Tin::Triangle>> old, std::size_t i) const {
+        constexpr std::size_t kTriangles = 24, kVertices = 12;
+        const std::size_t last = old.size() - 1;
+        __builtin_prefetch(&tin_.triangle(old[std::min(i + kTriangles, last)].first));
+        for (const VertexId v : old[std::min(i + kVertices, last)].second.vertices)
+            __builtin_prefetch(&tin_.vertex(v));
+    }
+
+    /// The first so many.
+    void add_block(std::span<const std::pair<TriangleId, Tin::Triangle>> old, std::size_t count) {
+        const double bound_before = before_.bound(), bound_after = after_.bound();
+        Mask changed = 0, was_plain = 0, is_plain = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            fetch_ahead(old, i);
+            const Tin::Triangle& was = old[i].second;
+            const Tin::Triangle& now = tin_.triangle(old[i].first);
+            const bool is_other = !is_same_piece(was, now);
+            const Glance before = glance_at(was), after = glance_at(now);
+            const bool passes =
+                before.is_blunter_than(bound_before) & before.is_flatter_than(steepest_);
+            changed |= Mask{is_other} << i;
+            was_plain |= Mask{passes} << i;
+            is_plain |= Mask{after.is_blunter_than(bound_after)} << i;
+            const auto& [a, b, c] = was.vertices;
+            newest_ = std::max(newest_, std::max({a, b, c}).value * std::uint32_t{is_other});
+        }
+        if (moved_any()) was_plain = 0;  // not as it was then
+        before_.pass_over(count_of(changed & was_plain));
+        after_.pass_over(count_of(changed & is_plain));
+        for_each_bit(changed & ~was_plain, [&](std::size_t i) { look_before(old[i].second); });
+        for_each_bit(changed & ~is_plain,
+                     [&](std::size_t i) { look_after(tin_.triangle(old[i].first)); });
+    }
+
+    void add_new_block(std::size_t begin, std::size_t count, bool is_flat_enough) {
+        const auto triangle = [&](std::size_t i) -> const Tin::Triangle& {
+            return tin_.triangle({static_cast<std::uint32_t>(begin + i)});
+        };
+        // They lie in old facets, where nothing was moved up or down: none is steeper.
+        const double bound = kMargin * (1.0 + steepest_) * after_.bound();
+        Mask is_plain = 0;
+        for (std::size_t i = 0; i < count && is_flat_enough; ++i) {
+            const auto& [a, b, c] = triangle(i).vertices;
+            const PlanGlance glance(tin_.vertex(a), tin_.vertex(b), tin_.vertex(c));
+            is_plain |= Mask{glance.is_blunter_than(bound)} << i;
+        }
+        after_.pass_over(count_of(is_plain));
+        const Mask all = ~Mask{0} >> (kBlock - count);
+        for_each_bit(all & ~is_plain, [&](std::size_t i) { look_after(triangle(i)); });
+    }
+
+    Glance glance_at(const Tin::Triangle& t) const {
+        const auto& [a, b, c] = t.vertices;
+        return {tin_.vertex(a), tin_.vertex(b), tin_.vertex(c)};
+    }
+
+    void look_before(const Tin::Triangle& t) {
+        const auto& [a, b, c] = t.vertices;
+        const TriangleShape was(corner_before(a), corner_before(b), corner_before(c));
+        before_.add(was);
+        if (was.is_steeper_than(steepest_)) steepest_ = was.squared_slope();
+    }
+
+    void look_after(const Tin::Triangle& t) {
+        const auto& [a, b, c] = t.vertices;
+        after_.add({tin_.vertex(a).point(), tin_.vertex(b).point(), tin_.vertex(c).point()});
+    }
+
+    /// Vertices keep their slots and plan positions: old triangles are there but for elevations.
+    Point3 corner_before(VertexId v) const {
+        Point3 corner = tin_.vertex(v).point();
+        const auto found =
+            std::lower_bound(moved_.begin(), moved_.end(), v,
+                             [](const auto& entry, VertexId id) { return entry.first < id; });
+        if (found != moved_.end() && found->first == v) corner.z = found->second;
+        return corner;
+    }
+
+    const Tin& tin_;
+    std::vector<std::pair<VertexId, double>> moved_;
+    std::size_t most_;
+    Lowest before_{most_};
+    Lowest after_{most_};
+    double steepest_ = 0.0;     ///< slope, squared
+    std::uint32_t newest_ = 0;  ///< corner of an old triangle
+};
+
 }  // namespace
 
 Measurement measure_operation(const Tin& tin, const Touched& touched) {
     const UndoRecord& march = touched.march;
-    const std::size_t most = march.triangles.size() + touched.triangle_end - march.triangle_count +
-                             (touched.across != nullptr ? touched.across->triangles.size() : 0);
-    Lowest before(most);
-    Lowest after(most);
-    double steepest = 0.0;  // squared
-    VertexId newest{0};     // corner of an old triangle
-    // Vertices keep their slots and plan positions: the old triangle is there but for elevations.
-    const auto moved = moved_vertices(tin, march);
-    const auto corner_before = [&](VertexId v) {
-        Tin::Vertex corner = tin.vertex(v);
-        const auto found =
-            std::lower_bound(moved.begin(), moved.end(), v,
-                             [](const auto& entry, VertexId id) { return entry.first < id; });
-        if (found != moved.end() && found->first == v) corner.z = found->second;
-        return corner;
-    };
-    const auto add_before = [&](const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c) {
-        const Glance glance(a, b, c);
-        if (glance.is_blunter_than(before.bound()) && glance.is_flatter_than(steepest))
-            return before.pass_over();
-        const TriangleShape was(a.point(), b.point(), c.point());
-        before.add(was);
-        if (was.is_steeper_than(steepest)) steepest = was.squared_slope();
-    };
-    const auto add_after = [&](const Tin::Triangle& t) {
-        const Tin::Vertex& a = tin.vertex(t.vertices[0]);
-        const Tin::Vertex& b = tin.vertex(t.vertices[1]);
-        const Tin::Vertex& c = tin.vertex(t.vertices[2]);
-        if (Glance(a, b, c).is_blunter_than(after.bound())) return after.pass_over();
-        after.add({a.point(), b.point(), c.point()});
-    };
-    const auto add = [&](TriangleId id, const Tin::Triangle& old) {
-        const Tin::Triangle& now = tin.triangle(id);
-        if (is_same_piece(old, now)) return;
-        const auto& [a, b, c] = old.vertices;
-        newest = std::max({newest, a, b, c});
-        if (moved.empty())
-            add_before(tin.vertex(a), tin.vertex(b), tin.vertex(c));
-        else
-            add_before(corner_before(a), corner_before(b), corner_before(c));
-        add_after(now);
-    };
-    for (std::size_t i = 0; i < march.triangles.size(); ++i) {
-        fetch_ahead(tin, march, i);
-        add(march.triangles[i].first, march.triangles[i].second);
-    }
-    // New triangles lie in the old facets, where nothing was moved up or down: none is steeper.
-    const double stretch = 1.01 * (1.0 + steepest);
-    const bool is_flat_enough = moved.empty() && touched.across == nullptr;
-    for (std::size_t t = march.triangle_count; t < touched.triangle_end; ++t) {
-        const Tin::Triangle& triangle = tin.triangle({static_cast<std::uint32_t>(t)});
-        const auto& [a, b, c] = triangle.vertices;
-        if (is_flat_enough && PlanGlance(tin.vertex(a), tin.vertex(b), tin.vertex(c))
-                                  .is_blunter_than(stretch * after.bound()))
-            after.pass_over();
-        else
-            add_after(triangle);
-    }
+    Survey survey(tin, touched);
+    survey.add(march.triangles);
+    survey.add_new(march.triangle_count, touched.triangle_end,
+                   !survey.moved_any() && touched.across == nullptr);
     if (touched.across != nullptr) {
         std::vector<TriangleId> known;
         for (const auto& [id, old] : march.triangles)
             known.push_back(id);
         std::sort(known.begin(), known.end());
+        std::vector<std::pair<TriangleId, Tin::Triangle>> others;
         for (const auto& [id, old] : touched.across->triangles)
             if (id.index() < march.triangle_count &&
                 !std::binary_search(known.begin(), known.end(), id))
-                add(id, old);
+                others.emplace_back(id, old);
+        survey.add(others);
     }
-
-    Measurement result;
-    result.steepest_slope = std::sqrt(steepest);
-    result.met_divided_facets = newest.index() >= tin.built_vertex_count();
-    result.smallest_angle_deg = {angle_degrees(before.least()), angle_degrees(after.least()),
-                                 angle_degrees(before.percentile()),
-                                 angle_degrees(after.percentile())};
-    return result;
+    return survey.result();
 }
 
 }  // namespace tinsmith::core

@@ -8,6 +8,7 @@
 #include "core/integrate/march.hpp"
 #include "core/mesh/surface.hpp"
 #include "core/predicates/orientation.hpp"
+#include "core/types/chosen.hpp"
 
 namespace tinsmith::core {
 
@@ -47,13 +48,13 @@ std::uint32_t sides_inside(const Tin::Triangle& t) {
 }  // namespace
 
 /// Asks for the triangle across the side, which the way may go through next.
-inline void March::fetch(Side side) const {
+[[gnu::always_inline]] inline void March::fetch(Side side) const {
     if (const Side twin = tin_.twin(side); twin.valid())
         __builtin_prefetch(&tin_.triangle(twin.triangle()));
 }
 
 /// Asks for the vertex that the triangle across the side has opposite.
-inline void March::fetch_apex(Side side) const {
+[[gnu::always_inline]] inline void March::fetch_apex(Side side) const {
     if (const Side twin = tin_.twin(side); twin.valid())
         __builtin_prefetch(&tin_.vertex(tin_.apex(twin)));
 }
@@ -121,27 +122,25 @@ bool March::stride(Side& exit) {
 /// The segment's end, where that is plainly on the edge; where it is plainly beyond, the point in
 /// which the input segment crosses the edge, as `crossing_of` has it. False: neither is plain.
 [[gnu::always_inline]] inline bool March::find_plain_split(const Passing& here, Point2& p) const {
-    const Tin::Vertex* a = &here.a;
-    const Tin::Vertex* b = &here.b;
-    const AreaEstimate end = estimate_doubled_area(a->plan(), b->plan(), end_);
+    const AreaEstimate end = estimate_doubled_area(here.a.plan(), here.b.plan(), end_);
     if (!(end.value < -(reach_of_rounding_ * here.manhattan + end.error))) {
         // Both ends of the edge are farther than that from the segment: between them.
         p = end_;
         return std::fabs(end.value) + end.error < reach_of_rounding_ * 0.499 * here.longest;
     }
-    double to_a = -here.of_a.value;
-    double to_b = here.of_b.value;
+    const double to_a = -here.of_a.value;
+    const double to_b = here.of_b.value;
     if (!((here.of_a.error + here.of_b.error) * here.longest <=
           reach_of_rounding_ / 16.0 * (to_a + to_b)))
         return false;
-    if (to_b < to_a || (to_a == to_b && is_below(*b, *a))) {
-        std::swap(a, b);
-        std::swap(to_a, to_b);
-    }
-    const double share = to_a / (to_a + to_b);
-    p = {a->x + (b->x - a->x) * share, a->y + (b->y - a->y) * share};
-    p = {std::clamp(p.x, std::min(a->x, b->x), std::max(a->x, b->x)),
-         std::clamp(p.y, std::min(a->y, b->y), std::max(a->y, b->y))};
+    bool is_turned = to_b < to_a;
+    if (to_a == to_b) is_turned = is_below(here.b, here.a);
+    const Tin::Vertex& a = *chosen(is_turned, &here.b, &here.a);  // the nearer end
+    const Tin::Vertex& b = *chosen(is_turned, &here.a, &here.b);
+    const double share = std::min(to_a, to_b) / (to_a + to_b);
+    p = {a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share};
+    p = {std::clamp(p.x, std::min(a.x, b.x), std::max(a.x, b.x)),
+         std::clamp(p.y, std::min(a.y, b.y), std::max(a.y, b.y))};
     const double at = along(p);
     return at > along(here.c.plan()) && at <= along(end_);
 }
@@ -163,11 +162,21 @@ bool March::stride(Side& exit) {
     const Point2 a = here.a.plan(), b = here.b.plan(), d = here.d.plan();
     const bool is_end = p == end_;
     const Point2 target = is_end ? ahead_ : end_;
-    const Orientation turn = orientation(p, target, d);
+    // Left or right of the apex across is a coin's toss: what follows from it is chosen, not
+    // branched for.
+    const AreaEstimate apex = estimate_doubled_area(p, target, d);
+    Orientation turn = apex.value > 0.0 ? CounterClockwise : Clockwise;
+    if (!(std::fabs(apex.value) > apex.error)) turn = orientation(p, target, d);
     const bool past_a = turn != Clockwise;
-    const bool goes_on = past_a ? turn == CounterClockwise && orientation(p, target, a) == Clockwise
-                                : orientation(p, target, b) == CounterClockwise;
-    fetch_apex(past_a ? here.across.next() : here.across.previous());
+    const AreaEstimate corner = estimate_doubled_area(p, target, *chosen(past_a, &a, &b));
+    const double beside = chosen(past_a, -corner.value, corner.value);
+    bool goes_on = beside > corner.error;
+    if (!(std::fabs(beside) > corner.error))
+        goes_on = past_a ? orientation(p, target, a) == Clockwise
+                         : orientation(p, target, b) == CounterClockwise;
+    goes_on = goes_on && turn != Collinear;
+    fetch_apex({here.across.triangle(), chosen(past_a, Side::next_of(here.across.index()),
+                                               Side::previous_of(here.across.index()))});
     const Seam seam = seam_of(here);
     if (open_ == at_ && !seam.covers_open) flush_open();
     const std::uint32_t below =
@@ -185,7 +194,7 @@ bool March::stride(Side& exit) {
     tally_.chains.back().vertices.push_back(v);
     at_ = v;
     close(seam, other, entered);
-    const Side way_on(entered, past_a ? 0U : 1U);
+    const Side way_on(entered, past_a ? 0U : 1U);  // from p to a, or from b to p
     way_on_ = way_on;
     const Side exit = goes_on ? way_on.next() : Side{};
     if (!is_end) return exit;
@@ -200,16 +209,18 @@ bool March::stride(Side& exit) {
     Seam seam;
     if (improver_ == nullptr) return seam;
     const Side next = here.exit.next(), previous = here.exit.previous();
-    const bool next_is_free = tin_.is_free(next), previous_is_free = tin_.is_free(previous);
-    seam.covers_open = here.exit.triangle() == open_entered_ || here.exit.triangle() == open_other_;
-    seam.is_simple = !(next_is_free && previous_is_free) &&
-                     sides_inside(tin_.triangle(here.across.triangle())) == 0;
-    if (!seam.is_simple || !(next_is_free || previous_is_free)) return seam;
-    const Side free = next_is_free ? next : previous;
+    // One question of both, for the answers cannot be foreseen.
+    const unsigned next_is_free = tin_.is_free(next), previous_is_free = tin_.is_free(previous);
+    const TriangleId behind = here.exit.triangle();
+    seam.covers_open = (unsigned{behind == open_entered_} | unsigned{behind == open_other_}) != 0;
+    seam.is_simple = ((next_is_free & previous_is_free) |
+                      sides_inside(tin_.triangle(here.across.triangle()))) == 0;
+    if ((unsigned{seam.is_simple} & (next_is_free | previous_is_free)) == 0) return seam;
+    const Side free(behind, chosen(next_is_free != 0, next.index(), previous.index()));
     const std::uint32_t beyond = sides_inside(tin_.triangle(tin_.twin(free).triangle()));
     seam.is_simple = (beyond & (beyond - 1)) == 0;
     seam.free = free;
-    seam.is_next = next_is_free;
+    seam.is_next = next_is_free != 0;
     return seam;
 }
 
@@ -226,8 +237,9 @@ bool March::stride(Side& exit) {
     open_other_ = other;
     if (!seam.free.valid()) return;
     // The split moved the side after the edge to the new triangle behind it, as side 1.
-    const Side next(TriangleId{entered.value - 1}, 1);
-    improver_->improve(seam.is_next ? next : seam.free);
+    Side free;
+    free.code = chosen(seam.is_next, Side(TriangleId{entered.value - 1}, 1).code, seam.free.code);
+    improver_->improve(free);
 }
 
 /// Leaves the vertex to the improver after all: the way does not go on from it by a plain step.

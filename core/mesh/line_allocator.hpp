@@ -6,10 +6,13 @@
 #include <cstring>
 #include <new>
 
+#include "core/mesh/large_blocks.hpp"
+
 namespace tinsmith::core {
 
 /// Hands out memory that begins where a cache line does, so that slots of half a line never lie
 /// across two: on a mesh that is not in the cache each look would else cost a line and a half.
+/// Large meshes come to lie in large pages.
 template <typename T>
 class LineAllocator {
   public:
@@ -22,6 +25,8 @@ class LineAllocator {
     T* allocate(std::size_t count) {
         if (count > (static_cast<std::size_t>(-1) - kLine) / sizeof(T))
             throw std::bad_array_new_length();
+        if (count * sizeof(T) >= kLargeBlock)
+            return static_cast<T*>(allocate_large_block(count * sizeof(T)));
         // By hand: aligned `operator new` of glibc leaves pieces that later requests search
         // through.
         char* const whole = static_cast<char*>(::operator new(count * sizeof(T) + kLine));
@@ -29,7 +34,8 @@ class LineAllocator {
         std::memcpy(aligned - sizeof(whole), &whole, sizeof(whole));
         return reinterpret_cast<T*>(aligned);
     }
-    void deallocate(T* memory, std::size_t /*count*/) {
+    void deallocate(T* memory, std::size_t count) {
+        if (count * sizeof(T) >= kLargeBlock) return free_large_block(memory, count * sizeof(T));
         char* whole = nullptr;
         std::memcpy(&whole, reinterpret_cast<char*>(memory) - sizeof(whole), sizeof(whole));
         ::operator delete(whole);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/predicates/orientation.hpp"
+#include "core/types/chosen.hpp"
 
 namespace tinsmith::core {
 
@@ -30,20 +31,19 @@ double elevation_on(const Tin& tin, Side s, Point2 p) {
 }
 
 double elevation_between(const Tin::Vertex& from, const Tin::Vertex& to, Point2 p) {
-    const Tin::Vertex* a = &from;
-    const Tin::Vertex* b = &to;
-    const double dx = b->x - a->x;
-    const double dy = b->y - a->y;
-    double from_a = (p.x - a->x) * dx + (p.y - a->y) * dy;
-    double from_b = (b->x - p.x) * dx + (b->y - p.y) * dy;
-    const bool swap =
-        from_b < from_a || (from_a == from_b && (b->x < a->x || (b->x == a->x && b->y < a->y)));
-    if (swap) {
-        std::swap(a, b);
-        std::swap(from_a, from_b);
-    }
-    const double z = a->z + (b->z - a->z) * (from_a / (from_a + from_b));
-    return std::clamp(z, std::min(a->z, b->z), std::max(a->z, b->z));
+    const double dx = to.x - from.x;
+    const double dy = to.y - from.y;
+    const double along = (p.x - from.x) * dx + (p.y - from.y) * dy;
+    const double left = (to.x - p.x) * dx + (to.y - p.y) * dy;
+    // From the nearer end; in the middle from the one that comes first in plan. Chosen, not
+    // branched for: which it is cannot be foreseen.
+    bool is_turned = left < along;
+    if (left == along) [[unlikely]]
+        is_turned = to.x < from.x || (to.x == from.x && to.y < from.y);
+    const double near_z = chosen(is_turned, to.z, from.z);
+    const double far_z = chosen(is_turned, from.z, to.z);
+    const double z = near_z + (far_z - near_z) * (std::min(left, along) / (along + left));
+    return std::clamp(z, std::min(near_z, far_z), std::max(near_z, far_z));
 }
 
 namespace {

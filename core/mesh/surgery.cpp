@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/types/chosen.hpp"
+
 namespace tinsmith::core {
 
 namespace {
@@ -202,36 +204,31 @@ VertexId Surgery::split_and_pass(Side s, const Point3& point, bool past_a, bool 
     const std::uint32_t marks_bc = side_marks(T.marks, i1, 1);
     const std::uint32_t way = kInsideBit | 1U | (1U << kFreshShift) | (lock ? 1U << 4 : 0U);
 
+    // Which half is entered is a coin's toss: all is chosen, nothing branched for.
+    const unsigned lost = chosen(past_a, j1, j2);  // U's side that goes to M
+    const unsigned turn = past_a ? 2U : 1U;        // M's side that is p-d
+    const Side outer = U.twins[lost];
+    const std::uint32_t marks_lost = side_marks(U.marks, lost, 3 - turn);
+    const VertexId beside = chosen(past_a, a, b);
+
     const VertexId p = append(point, t);
     T.vertices[i1] = p;
     T.twins[i1] = {N, 2};
+    T.twins[i] = chosen(past_a, Side{M, 0}, across);
     set_side_marks(T.marks, i1, way << i1);
+    U.vertices[chosen(past_a, j1, j)] = p;
+    U.twins[lost] = {M, turn};
+    U.twins[j] = chosen(past_a, Side{N, 0}, s);
+    set_side_marks(U.marks, lost, inside(lost));
     if (tin_.vertex(b).triangle == t) edit(b).triangle = N;
-    if (past_a) {
-        const Side outer_ad = U.twins[j1];
-        const std::uint32_t marks_ad = side_marks(U.marks, j1, 1);
-        T.twins[i] = {M, 0};
-        U.vertices[j1] = p;
-        U.twins[j] = {N, 0};
-        U.twins[j1] = {M, 2};
-        set_side_marks(U.marks, j1, inside(j1));
-        if (tin_.vertex(a).triangle == u) edit(a).triangle = M;
-        link(outer_bc, {N, 1});
-        link(outer_ad, {M, 1});
-        append(p, b, c, across, outer_bc, {t, i1}, facet, marks_bc | way << 2);
-        append(p, a, d, s, outer_ad, {u, j1}, facet_u, marks_ad | inside(2));
-    } else {
-        const Side outer_db = U.twins[j2];
-        const std::uint32_t marks_db = side_marks(U.marks, j2, 2);
-        U.vertices[j] = p;
-        U.twins[j2] = {M, 1};
-        set_side_marks(U.marks, j2, inside(j2));
-        if (tin_.vertex(b).triangle == u) edit(b).triangle = M;
-        link(outer_bc, {N, 1});
-        link(outer_db, {M, 2});
-        append(p, b, c, {M, 0}, outer_bc, {t, i1}, facet, marks_bc | way << 2);
-        append(b, p, d, {N, 0}, {u, j2}, outer_db, facet_u, marks_db | inside(1));
-    }
+    if (tin_.vertex(beside).triangle == u) edit(beside).triangle = M;
+    link(outer_bc, {N, 1});
+    link(outer, {M, 3 - turn});
+    append(p, b, c, chosen(past_a, across, Side{M, 0}), outer_bc, {t, i1}, facet,
+           marks_bc | way << 2);
+    append(chosen(past_a, p, b), chosen(past_a, a, p), d, chosen(past_a, s, Side{N, 0}),
+           chosen(past_a, outer, Side{u, lost}), chosen(past_a, Side{u, lost}, outer), facet_u,
+           marks_lost | inside(turn));
     return p;
 }
 

@@ -21,15 +21,19 @@ core::Tin built(const core::MeshData& mesh) {
     return std::move(*tin);
 }
 
-core::ShapeReport integrated(core::Tin& tin, const core::Shape& shape,
-                             const core::IntegrateOptions& options, double& ms,
-                             core::StageTimes& stages) {
-    const double start = now_ms();
-    const auto report = core::integrate(tin, {&shape, 1}, options);
-    ms = now_ms() - start;
+core::Report integrated(core::Tin& tin, const core::Shape& shape,
+                        const core::IntegrateOptions& options) {
+    auto report = core::integrate(tin, {&shape, 1}, options);
     if (!report) throw std::runtime_error("the shape is refused: " + report.errors()[0].detail);
-    stages = report->time_ms;
-    return report->shapes[0];
+    return std::move(*report);
+}
+
+/// Of a run of its own, for looking at the clock takes time.
+double share_of_improving(core::Tin tin, const core::Shape& shape) {
+    core::IntegrateOptions options;
+    options.clock_ms = now_ms;
+    const core::StageTimes ms = integrated(tin, shape, options).time_ms;
+    return ms.improve / (ms.locate + ms.integrate + ms.improve);
 }
 
 double timed_insert(cgal::Peer& peer, const std::vector<cgal::Polyline>& paths) {
@@ -38,11 +42,13 @@ double timed_insert(cgal::Peer& peer, const std::vector<cgal::Polyline>& paths) 
     return now_ms() - start;
 }
 
-/// "0.41 (0.38-0.44)": the median of the pairs' ratios and the middle half of them.
-std::string ratio(const std::vector<double>& one, const std::vector<double>& other) {
+/// "0.41 (0.38-0.44)": the median of the pairs' ratios and the middle half of them. Of each turn's
+/// two runs of `ours` the one of that number stands beside the peer's.
+std::string ratio(const std::vector<double>& ours, const std::vector<double>& peer,
+                  std::size_t number) {
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < one.size(); ++i)
-        ratios.push_back(one[i] / other[i]);
+    for (std::size_t i = 0; i < peer.size(); ++i)
+        ratios.push_back(ours[2 * i + number] / peer[i]);
     std::ranges::sort(ratios);
     char text[64];
     std::snprintf(text, sizeof text, "%.2f (%.2f-%.2f)", median(ratios), ratios[ratios.size() / 4],
@@ -81,30 +87,25 @@ Bases::Bases(const core::MeshData& mesh)
 PairedRuns run_paired(const Bases& bases, const core::Shape& shape, int runs) {
     const std::vector<cgal::Polyline> paths = cgal::drape(bases.tin, shape);
     PairedRuns result;
-    for (int run = 0; run <= runs; ++run) {
-        core::IntegrateOptions options;
-        core::StageTimes stages;
-        double ms = 0.0;
-        if (run == 0) options.clock_ms = now_ms;
-        {
-            core::Tin tin = bases.tin;
-            const core::ShapeReport report = integrated(tin, shape, options, ms, stages);
-            result.crossings = report.crossings;
-            result.added = report.vertices_added;
-        }
-        if (run == 0) {  // the first run warms up; only its stages' shares are kept
-            result.improving = stages.improve / (stages.locate + stages.integrate + stages.improve);
-            continue;
-        }
-        result.ours.push_back(ms);
-        {
-            cgal::Peer peer = bases.points;
-            result.points.push_back(timed_insert(peer, paths));
-            result.added_points = peer.vertex_count() - bases.points.vertex_count();
-        }
-        cgal::Peer peer = bases.triangles;
-        result.triangles.push_back(timed_insert(peer, paths));
-        result.added_triangles = peer.vertex_count() - bases.triangles.vertex_count();
+    const auto run_ours = [&] {
+        core::Tin tin = bases.tin;
+        const double start = now_ms();
+        const core::Report report = integrated(tin, shape, {});
+        result.ours.push_back(now_ms() - start);
+        result.crossings = report.shapes[0].crossings;
+        result.added = report.shapes[0].vertices_added;
+    };
+    const auto run_peer = [&](const cgal::Peer& base, std::vector<double>& times) {
+        cgal::Peer peer = base;
+        times.push_back(timed_insert(peer, paths));
+        return peer.vertex_count() - base.vertex_count();
+    };
+    result.improving = share_of_improving(bases.tin, shape);
+    for (int run = 0; run < runs; ++run) {
+        run_ours();
+        result.added_points = run_peer(bases.points, result.points);
+        run_ours();
+        result.added_triangles = run_peer(bases.triangles, result.triangles);
     }
     return result;
 }
@@ -130,7 +131,7 @@ void print_row(const std::string& mesh, const std::string& polygon, std::size_t 
         static_cast<unsigned long long>(runs.added_triangles), times(runs.ours).c_str(),
         times(runs.points).c_str(), times(runs.triangles).c_str(), runs.improving * 100.0,
         each(median(runs.ours), runs.added), each(median(runs.triangles), runs.added_triangles),
-        ratio(runs.ours, runs.points).c_str(), ratio(runs.ours, runs.triangles).c_str());
+        ratio(runs.ours, runs.points, 0).c_str(), ratio(runs.ours, runs.triangles, 1).c_str());
     std::fflush(stdout);
 }
 

@@ -29,14 +29,16 @@ struct Bases {
     cgal::Peer triangles;  ///< recipe b
 };
 
-/// One polygon into one mesh, again and again: the three in turn, each into a copy of its own made
-/// just before. Times in milliseconds; copying, and draping for the peers, are not in them.
+/// One polygon into one mesh, again and again, each time into a copy made just before: Tinsmith and
+/// recipe a, Tinsmith and recipe b. So each run follows one of the other program, and neither finds
+/// its own code, or branches just taken, in the processor's caches. Times in milliseconds; copying,
+/// and draping for the peers, are not in them.
 struct PairedRuns {
     std::uint64_t crossings = 0;  ///< with edges of the mesh, as Tinsmith reports them
     std::uint64_t added = 0;      ///< vertices, by Tinsmith
     std::uint64_t added_points = 0;
     std::uint64_t added_triangles = 0;
-    std::vector<double> ours;
+    std::vector<double> ours;  ///< two of each turn
     std::vector<double> points;
     std::vector<double> triangles;
     double improving = 0.0;  ///< share of Tinsmith's time that goes into swaps for better triangles
