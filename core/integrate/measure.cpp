@@ -231,10 +231,10 @@ class Survey {
             const Tin::Triangle& now = tin_.triangle(old[i].first);
             const bool is_other = !is_same_piece(was, now);
             const Glance before = glance_at(was), after = glance_at(now);
-            const bool passes =
-                before.is_blunter_than(bound_before) & before.is_flatter_than(steepest_);
+            const Mask is_blunt{before.is_blunter_than(bound_before)};
+            const Mask is_flat{before.is_flatter_than(steepest_)};
             changed |= Mask{is_other} << i;
-            was_plain |= Mask{passes} << i;
+            was_plain |= (is_blunt & is_flat) << i;
             is_plain |= Mask{after.is_blunter_than(bound_after)} << i;
             const auto& [a, b, c] = was.vertices;
             newest_ = std::max(newest_, std::max({a, b, c}).value * std::uint32_t{is_other});
