@@ -195,7 +195,7 @@ bool March::finish() {
     if (!at_.valid()) close_outside();
     flush_open();
     at_ = {};
-    return done && within_budget();
+    return done && within_budget() && is_as_promised();
 }
 
 /// Goes along an edge to its far end, or to the segment's end where that comes first.
@@ -264,12 +264,18 @@ bool March::reach(VertexId t, bool needs_swaps) {
     return true;
 }
 
-/// What was measured holds the promise on the chain's distance from the input.
+/// What was measured holds the promises on the chain's distance from the input, and the mesh's
+/// outline from what it was.
 bool March::is_as_promised() {
-    if (tally_.max_plan_deviation <= std::max(options_.snap, reach_of_rounding_)) return true;
-    return fail(ErrorCode::NotRepresentable,
-                "no mesh of doubles was found that holds this segment within the promised "
-                "distance; move it a little");
+    if (tally_.max_plan_deviation > std::max(options_.snap, reach_of_rounding_))
+        return fail(ErrorCode::NotRepresentable,
+                    "no mesh of doubles was found that holds this segment within the promised "
+                    "distance; move it a little");
+    if (outline_bend_ > reach_of_rounding_)
+        return fail(ErrorCode::NotRepresentable,
+                    "no mesh of doubles was found that holds this segment and the outline, which "
+                    "it meets too often in one place; move it a little");
+    return true;
 }
 
 /// Looks at all limits, and for how many steps none of them can be passed.

@@ -228,10 +228,11 @@ class March {
     const MarchLimits& limits_;
     Drift& drift_;
     Improver* improver_;
-    double reach_of_rounding_;  ///< 4 ulp of the mesh's largest coordinate
-    double flat_;               ///< a step of the surface that is none
-    double snap_;               ///< of this segment
-    double near_;               ///< what is nearer is one: half of that, or the snap
+    double reach_of_rounding_;   ///< 4 ulp of the mesh's largest coordinate
+    double flat_;                ///< a step of the surface that is none
+    double snap_;                ///< of this segment
+    double outline_bend_ = 0.0;  ///< how far at most an edge of the outline was bent
+    double near_;                ///< what is nearer is one: half of that, or the snap
     MarchTally tally_;
     std::optional<Error> error_;
     std::vector<VertexId> changed_;

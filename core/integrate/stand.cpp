@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/integrate/distance.hpp"
 #include "core/integrate/march.hpp"
 #include "core/mesh/surface.hpp"
 #include "core/predicates/orientation.hpp"
@@ -123,6 +124,7 @@ VertexId March::place_on(Side edge, Point2 p) {
         return v;
     }
     const double bent = bends_unusually(edge, p) ? bend_of(edge, p) : 0.0;
+    if (!across.valid()) outline_bend_ = std::max(outline_bend_, bent);
     const std::uint32_t below =
         std::max(drift_.nesting_of(tin_.origin(edge)), drift_.nesting_of(tin_.destination(edge)));
     const VertexId v = surgery_.split_edge(edge, {p.x, p.y, elevation_on(tin_, edge, p)});
@@ -150,15 +152,15 @@ double March::bend_of(Side edge, Point2 p) const {
                     drift_.bend_of(tin_.destination(edge)));
 }
 
-/// p's distance from the edge, and what the edge is off already, between what its ends are.
+/// p's distance from the edge, which may end before p by rounding, and what the edge is off
+/// already, between what its ends are.
 double March::off_edge(Side edge, Point2 p, double at_origin, double at_destination) const {
     const Point2 a = tin_.plan(tin_.origin(edge));
     const Point2 b = tin_.plan(tin_.destination(edge));
     const double squared = squared_distance(a, b);
     const double share =
         std::clamp(((p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)) / squared, 0.0, 1.0);
-    return at_origin + (at_destination - at_origin) * share +
-           std::fabs(compensated_doubled_area(a, b, p)) / std::sqrt(squared);
+    return at_origin + (at_destination - at_origin) * share + distance_to_segment(p, a, b);
 }
 
 /// How often elevations were interpolated one from the other at most, at the triangle's corners.
