@@ -106,10 +106,12 @@ void Triangulator::leave_out_repeated() {
     order_.resize(kept);
     std::sort(differ.begin(), differ.end());
     if (differ.size() > kMaxFaults) differ.resize(kMaxFaults);
-    for (const auto& [later, first] : differ)
+    for (const auto& [later, first] : differ) {
         fault(ErrorCode::ElevationTwice, later,
               "is at the position of point " + std::to_string(first) +
                   " with another elevation; keep one of them");
+        errors_.back().place.earlier = first;
+    }
 }
 
 /// Rounds of growing numbers of points, each spread over all of the plan and in the curve's order:

@@ -18,10 +18,10 @@ namespace tinsmith::core {
 /// takes the mesh as it is. The same points in the same order give the same mesh, on every
 /// compiler; which diagonal four points on a circle get depends on nothing else.
 /// Faults, at most kMaxFaults, each with the point's index as its place's vertex: coordinates that
-/// are not finite or out of range, a position with two elevations. Fewer than three positions, or
-/// all of them on one line, span no triangle.
-/// `progress` is told now and then what share is done; when it says false, the error is Cancelled.
-/// Cost: about n log n, some 100 bytes a point beside the result.
+/// are not finite or out of range, a position with two elevations (the place's `earlier` is the
+/// point that was there first). Fewer than three positions, or all of them on one line, span no
+/// triangle. `progress` is told now and then what share is done; when it says false, the error is
+/// Cancelled. Cost: about n log n, some 100 bytes a point beside the result.
 Result<MeshData> delaunay(std::span<const Point3> points,
                           const std::function<bool(double)>& progress = {});
 

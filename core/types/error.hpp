@@ -59,6 +59,7 @@ struct ErrorPlace {
     std::optional<std::size_t> path;      ///< index into the shape's paths
     std::optional<std::size_t> point;  ///< index into the path's points (segment: its first point)
     std::optional<Point2> position;    ///< plan position
+    std::optional<std::size_t> earlier;  ///< the vertex before it that `vertex` contradicts
 };
 
 /// One fault: what is wrong, where, and in `detail` what the caller can do.

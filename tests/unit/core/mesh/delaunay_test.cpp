@@ -160,6 +160,7 @@ TEST(Delaunay, NamesPositionsWithTwoElevations) {
     EXPECT_EQ(mesh.errors()[0].detail,
               "point 3 is at the position of point 1 with another elevation; keep one of them");
     EXPECT_EQ(mesh.errors()[1].place.vertex, 4U);
+    EXPECT_EQ(mesh.errors()[1].place.earlier, 0U);
 }
 
 TEST(Delaunay, NamesEveryCoordinateThatIsNone) {
