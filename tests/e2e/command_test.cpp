@@ -56,6 +56,14 @@ TEST_F(Command, IntegratesRealTerrain) {
     EXPECT_GT(told["totals"]["crossings"], 0);
 }
 
+TEST_F(Command, KnowsCsvByItsFirstLine) {
+    EXPECT_EQ(run({"check", kData + "spot_heights.csv"}), 0) << output;
+    const std::string bad = scratch.file("bad.csv");
+    std::ofstream(bad) << "0 0 1\n10 0 2\n0 10 north\n";
+    EXPECT_EQ(run({"check", bad}), 1);
+    EXPECT_NE(output.find("Line 3, column 6: \"north\" is no number"), std::string::npos) << output;
+}
+
 TEST_F(Command, ShowsABarOnATerminal) {
     const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_GE(terminal, 0);
