@@ -32,8 +32,8 @@ constexpr const char* kServeFooter =
     "  TINSMITH_MAX_SESSIONS=8 tinsmith serve";
 
 constexpr const char* kIntegrateFooter =
-    "TERRAIN is a GeoTIFF of elevations or a JSON mesh or grid, POLYGONS is GeoJSON in the\n"
-    "terrain's coordinates.\n\n"
+    "TERRAIN is a GeoTIFF of elevations, a JSON mesh, points or grid, or CSV lines x,y,z;\n"
+    "POLYGONS is GeoJSON in the terrain's coordinates.\n\n"
     "Examples:\n"
     "  tinsmith integrate terrain.tif lake.geojson -o out.glb --report report.json\n"
     "  tinsmith integrate mesh.json road.geojson -o out.glb --elevation own --snap 0.05";

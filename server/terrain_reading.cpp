@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "api/formats/csv.hpp"
 #include "api/formats/geotiff.hpp"
 #include "api/formats/terrain_json.hpp"
 #include "core/mesh/build.hpp"
@@ -40,6 +41,7 @@ struct Reader {
 
 constexpr std::string_view kJsonTypes[] = {"application/json"};
 constexpr std::string_view kTiffTypes[] = {"image/tiff", "image/geotiff"};
+constexpr std::string_view kCsvTypes[] = {"text/csv"};
 
 constexpr Reader kReaders[] = {
     {TerrainFormat::Json, kJsonTypes,
@@ -50,6 +52,7 @@ constexpr Reader kReaders[] = {
      [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
          return api::read_geotiff(bytes, limits);
      }},
+    {TerrainFormat::Csv, kCsvTypes, api::read_csv},
 };
 
 const Reader& reader_of(TerrainFormat format) {
@@ -63,7 +66,9 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     using namespace std::string_view_literals;
     const bool is_tiff = bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv) ||
                          bytes.starts_with("II+\0"sv) || bytes.starts_with("MM\0+"sv);
-    return is_tiff ? TerrainFormat::GeoTiff : TerrainFormat::Json;
+    if (is_tiff) return TerrainFormat::GeoTiff;
+    if (api::looks_like_csv(bytes)) return TerrainFormat::Csv;
+    return TerrainFormat::Json;
 }
 
 std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {

@@ -13,9 +13,9 @@
 
 namespace tinsmith::server {
 
-enum class TerrainFormat { Json, GeoTiff };
+enum class TerrainFormat { Json, GeoTiff, Csv };
 
-/// By the first bytes: a TIFF says so, anything else is read as JSON.
+/// By the first bytes: a TIFF says so, lines of numbers are CSV, anything else is read as JSON.
 TerrainFormat terrain_format_of(std::string_view bytes);
 
 /// By a media type, lower-case; nothing where that is no terrain's.

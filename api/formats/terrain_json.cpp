@@ -9,6 +9,7 @@
 #include "api/formats/grid_mesh.hpp"
 #include "api/formats/json_reader.hpp"
 #include "api/formats/json_reader_values.hpp"
+#include "api/formats/points_mesh.hpp"
 
 namespace tinsmith::api {
 
@@ -27,10 +28,13 @@ Fault too_many(std::string code, std::string_view what, std::size_t most, std::s
             std::move(pointer)};
 }
 
-/// An array of tuples that go straight into the mesh's buffers, up to a limit.
+/// An array of positions that go straight into their buffer, up to a limit.
 class VertexList : public Value, public Container {
   public:
-    VertexList(std::vector<core::Point3>& out, std::size_t most) : vertex_(out), most_(most) {}
+    /// `item` and `list` are for people: "a vertex [x, y, z]", "an array of vertices".
+    VertexList(std::vector<core::Point3>& out, std::size_t most, std::string_view item,
+               std::string_view list)
+        : vertex_(out, item), most_(most), list_(list) {}
 
     Container* array(Reader&) override { return this; }
     Value* element(Reader& reader) override {
@@ -41,12 +45,12 @@ class VertexList : public Value, public Container {
     }
 
   protected:
-    std::string_view expected() const override { return "an array of vertices"; }
+    std::string_view expected() const override { return list_; }
 
   private:
     struct Vertex : Tuple {
-        explicit Vertex(std::vector<core::Point3>& vertices)
-            : Tuple(3, Items::Coordinate, "a vertex [x, y, z]"), out(vertices) {}
+        Vertex(std::vector<core::Point3>& vertices, std::string_view item)
+            : Tuple(3, Items::Coordinate, item), out(vertices) {}
         void complete(Reader&) override {
             out.push_back({numbers()[0], numbers()[1], numbers()[2]});
         }
@@ -55,6 +59,7 @@ class VertexList : public Value, public Container {
 
     Vertex vertex_;
     std::size_t most_;
+    std::string_view list_;
 };
 
 class TriangleList : public Value, public Container {
@@ -138,7 +143,8 @@ class Elevations : public Value, public Container {
 class MeshObject : public Object {
   public:
     MeshObject(core::MeshData& mesh, const ReadLimits& limits)
-        : vertices_(mesh.vertices, limits.max_vertices),
+        : vertices_(mesh.vertices, limits.max_vertices, "a vertex [x, y, z]",
+                    "an array of vertices"),
           triangles_(mesh.triangles, limits.max_triangles) {
         expect({{"vertices", &vertices_, true}, {"triangles", &triangles_, true}});
     }
@@ -227,39 +233,34 @@ class KnownText : public json::Text {
     std::string known_;
 };
 
-/// "points" is in the contract and not yet in the program.
-class NotYet : public Value {
-  public:
-    void scalar(Reader& reader, const Scalar&) override { refuse(reader); }
-    Container* object(Reader& reader) override { return refuse(reader); }
-    Container* array(Reader& reader) override { return refuse(reader); }
-
-  protected:
-    std::string_view expected() const override { return "nothing"; }
-
-  private:
-    static Container* refuse(Reader& reader) {
-        reader.add(FaultKind::Unsupported,
-                   {"POINTS_UNSUPPORTED",
-                    "Points are not triangulated by this version yet; send a mesh or a grid.",
-                    reader.pointer()});
-        return nullptr;
-    }
-};
-
 class Body : public Object {
   public:
     explicit Body(const ReadLimits& limits)
-        : limits_(limits), mesh_(terrain_.mesh, limits), grid_object_(grid_, limits) {
+        : limits_(limits),
+          mesh_(terrain_.mesh, limits),
+          points_list_(points_, limits.max_vertices, "a point [x, y, z]", "an array of points"),
+          grid_object_(grid_, limits) {
         expect({{"name", &name_},
                 {"crs", &crs_},
                 {"unit", &unit_},
                 {"mesh", &mesh_},
-                {"points", &points_},
+                {"points", &points_list_},
                 {"grid", &grid_object_}});
     }
 
+    /// Points leave half of the work to be done when the body has been read.
+    double share_of_reading() const { return points_.empty() ? 1.0 : 0.5; }
+
     Parsed<Terrain> result(FaultLog&& log) && {
+        if (log.empty() && has("points")) {
+            auto mesh =
+                mesh_of_points(points_, limits_, "/points",
+                               [](Fault& fault, std::size_t point, std::optional<std::size_t>) {
+                                   fault.pointer = json::pointer_to("/points", point);
+                               });
+            if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
+            terrain_.mesh = std::move(*mesh);
+        }
         if (log.empty() && has("grid")) {
             auto mesh = mesh_of_grid(grid_, limits_, "/grid");
             if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
@@ -274,10 +275,10 @@ class Body : public Object {
         const int terrains = has("mesh") + has("points") + has("grid");
         if (terrains == 0) {
             reader.fault("MEMBER_MISSING",
-                         "A terrain is needed here: one of \"mesh\" and \"grid\".");
+                         "A terrain is needed here: one of \"mesh\", \"points\" and \"grid\".");
         } else if (terrains > 1) {
             reader.fault("TERRAIN_REPEATED",
-                         "Give one terrain only: one of \"mesh\" and \"grid\".");
+                         "Give one terrain only: one of \"mesh\", \"points\" and \"grid\".");
         }
         if (is_common_geographic(terrain_.crs)) {
             reader.add(FaultKind::Unsupported,
@@ -291,12 +292,13 @@ class Body : public Object {
     ReadLimits limits_;
     Terrain terrain_;
     Grid grid_;
+    std::vector<core::Point3> points_;
     json::Text name_{terrain_.name};
     KnownText crs_{terrain_.crs, &normalise_crs, "CRS_UNKNOWN", "Write it like \"EPSG:32616\"."};
     KnownText unit_{terrain_.unit, &normalise_unit, "UNIT_UNKNOWN",
                     "Known are: metre, foot, US survey foot."};
     MeshObject mesh_;
-    NotYet points_;
+    VertexList points_list_;
     GridObject grid_object_;
 };
 
@@ -304,7 +306,13 @@ class Body : public Object {
 
 Parsed<Terrain> read_terrain_json(std::string_view body, const ReadLimits& limits) {
     Body root(limits);
-    Reader reader(root, limits);
+    ReadLimits of_reading = limits;
+    if (limits.progress) {
+        of_reading.progress = [&](double share) {
+            return limits.progress(share * root.share_of_reading());
+        };
+    }
+    Reader reader(root, of_reading);
     json::read(body, reader);
     return std::move(root).result(std::move(reader.log()));
 }

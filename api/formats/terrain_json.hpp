@@ -13,9 +13,11 @@ namespace tinsmith::api {
 ///
 ///     {"name"?: text, "crs"?: "EPSG:n", "unit"?: "metre" | "foot" | "US survey foot",
 ///      "mesh": {"vertices": [[x,y,z],...], "triangles": [[a,b,c],...]}
+///      | "points": [[x,y,z],...]
 ///      | "grid": {"origin": [x,y], "cell": [dx,dy], "columns": n, "rows": m,
 ///                 "elevations": [z | null, ...]}}
 ///
+/// Points are triangulated (`core::delaunay`); their faults point to `/points/17`.
 /// Members may come in any order; unknown and repeated ones are refused by name. Names every
 /// fault, not only the first. Whether a mesh's indices exist and its triangles fit together is
 /// `core::build_tin`'s to say. Memory: the buffers of the result, no document tree.

@@ -74,6 +74,10 @@ class Expansion {  // NOLINT(cppcoreguidelines-pro-type-member-init): only `size
         return sum;
     }
 
+    /// The components, from the smallest on; none is zero.
+    std::size_t size() const { return size_; }
+    double part(std::size_t i) const { return parts_[i]; }
+
     int sign() const {
         if (size_ == 0) return 0;
         return parts_[size_ - 1] > 0.0 ? 1 : -1;

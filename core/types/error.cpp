@@ -25,6 +25,10 @@ std::string_view code_name(ErrorCode code) {
             return "VERTEX_FOLDED";
         case ErrorCode::MeshTooLarge:
             return "MESH_TOO_LARGE";
+        case ErrorCode::TooFewPoints:
+            return "TOO_FEW_POINTS";
+        case ErrorCode::PointsCollinear:
+            return "POINTS_COLLINEAR";
         case ErrorCode::RingTooShort:
             return "RING_TOO_SHORT";
         case ErrorCode::LineTooShort:

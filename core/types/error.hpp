@@ -25,12 +25,14 @@ enum class ErrorCode {
     TriangleClockwise = 206,      ///< clockwise seen from above
     VertexFolded = 207,           ///< the triangles around a vertex overlap
     MeshTooLarge = 208,           ///< more vertices or triangles than the ids can count
+    TooFewPoints = 211,           ///< fewer than three distinct positions to triangulate
+    PointsCollinear = 212,        ///< all positions to triangulate are on one line
     // 300: polygons
     RingTooShort = 301,      ///< fewer than three distinct positions in a ring
     LineTooShort = 302,      ///< fewer than two distinct positions in a line
     ShapeEmpty = 303,        ///< no position at all
     ElevationMissing = 304,  ///< a path with elevations of its own lacks one
-    ElevationTwice = 305,    ///< one position with two elevations
+    ElevationTwice = 305,    ///< one position with two elevations, also of a terrain's points
     // 400: integration
     OutsideMesh = 401,       ///< nothing of the request meets the mesh
     LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that
@@ -57,6 +59,7 @@ struct ErrorPlace {
     std::optional<std::size_t> path;      ///< index into the shape's paths
     std::optional<std::size_t> point;  ///< index into the path's points (segment: its first point)
     std::optional<Point2> position;    ///< plan position
+    std::optional<std::size_t> earlier;  ///< the vertex before it that `vertex` contradicts
 };
 
 /// One fault: what is wrong, where, and in `detail` what the caller can do.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kCursorKind = "session";
 constexpr std::string_view kTerrainTypes =
-    "application/json (mesh or grid), image/tiff (GeoTIFF elevations)";
+    "application/json (mesh, points or grid), image/tiff (GeoTIFF elevations), text/csv (x,y,z)";
 
 /// The format by Content-Type, or 415 saying what curl should have been told.
 Step<TerrainFormat> require_terrain_format(const Request& request) {

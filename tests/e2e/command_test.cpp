@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include <fcntl.h>
@@ -54,6 +55,14 @@ TEST_F(Command, IntegratesRealTerrain) {
     const auto told = json::parse(content_of(report));
     EXPECT_EQ(told["polygons"][0]["id"], "p1");
     EXPECT_GT(told["totals"]["crossings"], 0);
+}
+
+TEST_F(Command, KnowsCsvByItsFirstLine) {
+    EXPECT_EQ(run({"check", kData + "spot_heights.csv"}), 0) << output;
+    const std::string bad = scratch.file("bad.csv");
+    std::ofstream(bad) << "0 0 1\n10 0 2\n0 10 north\n";
+    EXPECT_EQ(run({"check", bad}), 1);
+    EXPECT_NE(output.find("Line 3, column 6: \"north\" is no number"), std::string::npos) << output;
 }
 
 TEST_F(Command, ShowsABarOnATerminal) {

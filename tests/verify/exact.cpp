@@ -137,6 +137,21 @@ int side_of(Point2 a, Point2 b, Point2 c) {
     return sgn(rational_area(a, b, c));
 }
 
+int circle_side_of(Point2 a, Point2 b, Point2 c, Point2 d) {
+    ++rational_count;
+    const RationalPoint o = rational(d);
+    const auto row = [&o](Point2 p) {
+        const RationalPoint q = rational(p);
+        return RationalPoint{q.x - o.x, q.y - o.y};
+    };
+    const RationalPoint p = row(a), q = row(b), r = row(c);
+    const auto square = [](const RationalPoint& s) -> Rational { return s.x * s.x + s.y * s.y; };
+    const Rational determinant = square(p) * (q.x * r.y - r.x * q.y) +
+                                 square(q) * (r.x * p.y - p.x * r.y) +
+                                 square(r) * (p.x * q.y - q.x * p.y);
+    return sgn(determinant);
+}
+
 double doubled_area(Point2 a, Point2 b, Point2 c) {
     const double left = (a.x - c.x) * (b.y - c.y);
     const double right = (a.y - c.y) * (b.x - c.x);

@@ -14,6 +14,10 @@ using core::Point3;
 /// Side of the directed line a -> b on which c lies: 1 left, -1 right, 0 on it. Exact.
 int side_of(Point2 a, Point2 b, Point2 c);
 
+/// Where d is against the circle through a, b, c, counter-clockwise: 1 inside, -1 outside, 0 on it.
+/// Exact, by rational numbers always.
+int circle_side_of(Point2 a, Point2 b, Point2 c, Point2 d);
+
 /// Twice the signed area of a, b, c: the sign exact, the value right to 2^-40 of itself.
 double doubled_area(Point2 a, Point2 b, Point2 c);
 

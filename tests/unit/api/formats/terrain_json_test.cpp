@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/formats/terrain_json.hpp"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -22,6 +24,48 @@ TEST(TerrainJson, ReadsAMeshWithMembersInAnyOrder) {
     EXPECT_EQ(terrain->mesh.vertices[2], (core::Point3{0, 10, -3}));
     ASSERT_EQ(terrain->mesh.triangles.size(), 2U);
     EXPECT_EQ(terrain->mesh.triangles[1], (std::array<std::uint32_t, 3>{2, 1, 3}));
+}
+
+TEST(TerrainJson, TriangulatesPoints) {
+    const std::string body =
+        R"({"points": [[0,0,1],[10,0,2],[10,10,3],[0,0,1],[0,10,4]], "crs": "EPSG:32616"})";
+    const auto terrain = read_terrain_json(body, {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->crs, "EPSG:32616");
+    EXPECT_EQ(terrain->mesh.vertices,
+              (std::vector<core::Point3>{{0, 0, 1}, {10, 0, 2}, {10, 10, 3}, {0, 10, 4}}));
+    EXPECT_EQ(terrain->mesh.triangles.size(), 2U);
+    ReadLimits limits;
+    limits.max_vertices = 4;
+    EXPECT_EQ(read_terrain_json(body, limits).faults()[0].code, "TOO_MANY_VERTICES");
+    limits.max_vertices = 5;
+    limits.max_triangles = 1;
+    EXPECT_EQ(read_terrain_json(body, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
+}
+
+TEST(TerrainJson, TellsOfPointsInTwoHalvesAndStopsInEach) {
+    std::string body = R"({"points": [)";
+    for (int i = 0; i < 40'000; ++i)
+        body +=
+            (i > 0 ? ",[" : "[") + std::to_string(i % 200) + "," + std::to_string(i / 200) + ",1]";
+    body += "]}";
+    std::vector<double> told;
+    ReadLimits limits;
+    limits.progress = [&](double share) {
+        told.push_back(share);
+        return true;
+    };
+    ASSERT_TRUE(read_terrain_json(body, limits).ok());
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GT(told.size(), 8U);
+    for (const std::size_t stop : {std::size_t{2}, told.size() - 1}) {
+        std::size_t asked = 0;
+        limits.progress = [&](double) { return asked++ != stop; };
+        const auto stopped = read_terrain_json(body, limits);
+        ASSERT_FALSE(stopped.ok());
+        EXPECT_EQ(stopped.kind(), FaultKind::Stopped);
+        EXPECT_EQ(asked, stop + 1);
+    }
 }
 
 TEST(TerrainJson, ReadsAGridFromNorthToSouthWithAHole) {
@@ -60,7 +104,13 @@ TEST(TerrainJson, NamesWhatIsWrongAndWhere) {
     const std::string place = R"("origin": [0,0], "cell": [1,1], )";
     const BadBody cases[] = {
         {"{}", invalid, "MEMBER_MISSING", ""},
-        {R"({"points": [[0,0,0]]})", FaultKind::Unsupported, "POINTS_UNSUPPORTED", "/points"},
+        {R"({"points": [[0,0,0]]})", invalid, "TOO_FEW_POINTS", "/points"},
+        {R"({"points": [[0,0,0],[1,1,0],[2,2,0]]})", invalid, "POINTS_COLLINEAR", "/points"},
+        {R"({"points": [[0,0,0],[1,1,0],[2,0,0],[1,1,7]]})", invalid, "ELEVATION_TWICE",
+         "/points/3"},
+        {R"({"points": {}})", invalid, "WRONG_TYPE", "/points"},
+        {R"({"points": [[0,0,0],[1,1]]})", invalid, "WRONG_LENGTH", "/points/1"},
+        {R"({"points": [[0,0,0],[1,1,1e10]]})", invalid, "COORDINATE_OUT_OF_RANGE", "/points/1/2"},
         {R"({"mesh": {"vertices": []}})", invalid, "MEMBER_MISSING", "/mesh"},
         {R"({"mesh": []})", invalid, "WRONG_TYPE", "/mesh"},
         {mesh("{}"), invalid, "WRONG_TYPE", "/mesh/triangles"},

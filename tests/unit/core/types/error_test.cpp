@@ -25,6 +25,7 @@ constexpr ErrorCode kCodes[] = {
     ErrorCode::Cancelled,           ErrorCode::StepBudget,
     ErrorCode::NoEdgeAlong,         ErrorCode::IdBudget,
     ErrorCode::NothingInside,       ErrorCode::NothingLeft,
+    ErrorCode::TooFewPoints,        ErrorCode::PointsCollinear,
 };
 
 TEST(ErrorCode, EachHasAWordOfItsOwn) {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/points_mesh.hpp"
+
+#include <string>
+#include <utility>
+
+#include "core/mesh/delaunay.hpp"
+
+namespace tinsmith::api {
+
+namespace {
+
+Parsed<core::MeshData> refusal(const core::Errors& errors, const ReadLimits& limits,
+                               const std::string& pointer, const PlacePoint& place) {
+    Faults faults;
+    auto kind = FaultKind::Invalid;
+    for (const core::Error& error : errors) {
+        if (error.code == core::ErrorCode::Cancelled)
+            return {FaultKind::Stopped, reading_stopped()};
+        if (error.code == core::ErrorCode::MeshTooLarge) kind = FaultKind::TooLarge;
+        if (faults.size() == limits.max_faults) break;
+        Fault fault{std::string(core::code_name(error.code)), error.detail, pointer};
+        if (error.place.position) {
+            fault.coordinate = {error.place.position->x, error.place.position->y};
+        }
+        if (error.place.vertex) {
+            fault.index = *error.place.vertex;
+            place(fault, *error.place.vertex, error.place.earlier);
+        }
+        faults.push_back(std::move(fault));
+    }
+    return {kind, std::move(faults)};
+}
+
+}  // namespace
+
+Parsed<core::MeshData> mesh_of_points(std::span<const core::Point3> points,
+                                      const ReadLimits& limits, const std::string& pointer,
+                                      const PlacePoint& place) {
+    std::function<bool(double)> progress;
+    if (limits.progress)
+        progress = [&limits](double share) { return limits.progress(0.5 + 0.5 * share); };
+    auto mesh = core::delaunay(points, progress);
+    if (!mesh) return refusal(mesh.errors(), limits, pointer, place);
+    if (mesh->triangles.size() > limits.max_triangles) {
+        return {
+            FaultKind::TooLarge,
+            {"TOO_MANY_TRIANGLES",
+             "The points make " + std::to_string(mesh->triangles.size()) + " triangles; at most " +
+                 std::to_string(limits.max_triangles) + " are taken here.",
+             pointer}};
+    }
+    return std::move(*mesh);
+}
+
+}  // namespace tinsmith::api

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// The core's Delaunay triangulation against CGAL's with its spatial sort, on the same points, in
+// one run: README.md in this folder says what is compared and what came out. One thread.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <malloc.h>
+#include <time.h>
+
+#include "core/mesh/delaunay.hpp"
+#include "tests/cgal/bundled_data.hpp"
+#include "tests/cgal/delaunay_mesh.hpp"
+#include "tests/support/point_clouds.hpp"
+
+namespace tinsmith::bench {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: delaunay_bench PART [RUNS]\n"
+    "  bundled  the bundled terrain's points, and as many of each sort\n"
+    "  half     500,000 points\n"
+    "  large    5,000,000 points (needs 2 GB)\n"
+    "  ours     Tinsmith alone, 1,000,000 scattered points, for `perf record`\n"
+    "  smoke    small clouds of every sort; fails where the counts of triangles differ\n";
+
+double now_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+using Points = std::vector<core::Point3>;
+
+std::size_t count_ours(const Points& points) {
+    const auto mesh = core::delaunay(points);
+    if (!mesh) throw std::runtime_error("the points are refused: " + mesh.errors()[0].detail);
+    return mesh->triangles.size();
+}
+
+struct Timed {
+    double ms = 0.0;
+    std::size_t triangles = 0;
+};
+
+Timed timed(std::size_t (*count)(const Points&), const Points& points) {
+    const double start = now_ms();
+    const std::size_t triangles = count(points);
+    return {now_ms() - start, triangles};
+}
+
+double at_share(std::vector<double> values, std::size_t quarters) {
+    std::ranges::sort(values);
+    return values[std::min(values.size() - 1, values.size() * quarters / 4)];
+}
+
+/// "1.62 (1.58-1.66)": the median of the pairs' ratios and the middle half of them.
+std::string ratio(const std::vector<double>& theirs, const std::vector<double>& ours) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < ours.size(); ++i)
+        ratios.push_back(theirs[i] / ours[i]);
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f (%.2f-%.2f)", at_share(ratios, 2), at_share(ratios, 1),
+                  at_share(ratios, 3));
+    return text;
+}
+
+/// The three in turn, each run after a first one that warms up.
+void compare(const std::string& name, const Points& points, int runs) {
+    std::vector<double> ours, bare, indexed;
+    for (int run = 0; run <= runs; ++run) {
+        const Timed our = timed(count_ours, points);
+        const Timed plain = timed(cgal::delaunay_count, points);
+        const Timed with_indices = timed(cgal::delaunay_count_with_indices, points);
+        if (our.triangles != plain.triangles || our.triangles != with_indices.triangles)
+            throw std::runtime_error(name + ": " + std::to_string(our.triangles) +
+                                     " triangles, CGAL " + std::to_string(plain.triangles));
+        if (run == 0) continue;
+        ours.push_back(our.ms);
+        bare.push_back(plain.ms);
+        indexed.push_back(with_indices.ms);
+    }
+    std::printf("| %s | %zu | %.1f | %.1f | %.1f | %.0f | %s | %s |\n", name.c_str(), points.size(),
+                at_share(ours, 2), at_share(bare, 2), at_share(indexed, 2),
+                at_share(ours, 2) * 1e6 / static_cast<double>(points.size()),
+                ratio(bare, ours).c_str(), ratio(indexed, ours).c_str());
+    std::fflush(stdout);
+}
+
+void compare_all(std::size_t size, int runs) {
+    for (const char* name :
+         {"scattered", "centimetres far away", "grid", "grid far away", "clustered"})
+        compare(name, test::point_cloud(name).make(size, 1), runs);
+}
+
+int smoke() {
+    for (const test::PointCloud& cloud : test::point_clouds()) {
+        const Points points = cloud.make(2'000, 7);
+        const std::size_t ours = count_ours(points), theirs = cgal::delaunay_count(points);
+        std::printf("%s: %zu triangles, %zu by CGAL\n", cloud.name.c_str(), ours, theirs);
+        if (ours != theirs) return EXIT_FAILURE;
+    }
+    return EXIT_SUCCESS;
+}
+
+int run(const std::string& part, int runs) {
+    if (part == "smoke") return smoke();
+    if (part == "ours") {
+        const Points points = test::point_cloud("scattered").make(1'000'000, 1);
+        for (int i = 0; i < runs; ++i)
+            std::printf("%.1f ms\n", timed(count_ours, points).ms);
+        return EXIT_SUCCESS;
+    }
+    if (part != "bundled" && part != "half" && part != "large") {
+        std::fputs(kUsage, stderr);
+        return 2;
+    }
+    std::printf(
+        "| points | number | Tinsmith ms | CGAL ms | CGAL with indices ms | Tinsmith ns/point | "
+        "CGAL / Tinsmith | with indices / Tinsmith |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+    if (part == "bundled") {
+        const Points terrain = cgal::bundled_terrain().vertices;
+        compare("bundled terrain", terrain, runs);
+        compare_all(terrain.size(), runs);
+    }
+    if (part == "half") compare_all(500'000, runs);
+    if (part == "large") compare_all(5'000'000, runs);
+    return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace tinsmith::bench
+
+int main(int count, char** arguments) {
+    // Freed memory is kept, as in a process that has run for a while, for all sides alike.
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, -1);
+    try {
+        const int runs = count > 2 ? std::atoi(arguments[2]) : 9;
+        return tinsmith::bench::run(count > 1 ? arguments[1] : "", runs < 1 ? 1 : runs);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "delaunay_bench: %s\n", error.what());
+        return EXIT_FAILURE;
+    }
+}
