@@ -14,7 +14,7 @@ namespace tinsmith::core {
 /// Builds in passes, each of which needs what the earlier ones proved.
 class TinBuilder {
   public:
-    explicit TinBuilder(const MeshData& data) : data_(data) {}
+    TinBuilder(const MeshData& data, const MeshNames& names) : data_(data), names_(names) {}
 
     Result<Tin> build() {
         check_coordinates();
@@ -32,18 +32,23 @@ class TinBuilder {
     void fault(ErrorCode code, std::string detail, ErrorPlace place) {
         if (errors_.size() < kMaxFaults) errors_.push_back({code, std::move(detail), place});
     }
+    static std::size_t name(std::span<const std::uint32_t> names, std::size_t i) {
+        return i < names.size() ? names[i] : i;
+    }
+    std::size_t triangle_name(std::size_t t) const { return name(names_.triangles, t); }
+    std::size_t vertex_name(std::size_t v) const { return name(names_.vertices, v); }
     void triangle_fault(ErrorCode code, std::size_t t, const std::string& what) {
         ErrorPlace place;
-        place.triangle = t;
+        place.triangle = triangle_name(t);
         const std::uint32_t v = data_.triangles[t][0];
         if (v < data_.vertices.size()) place.position = data_.vertices[v].plan();
-        fault(code, "triangle " + std::to_string(t) + " " + what, place);
+        fault(code, "triangle " + std::to_string(*place.triangle) + " " + what, place);
     }
     void vertex_fault(ErrorCode code, std::size_t v, const std::string& what) {
         ErrorPlace place;
-        place.vertex = v;
+        place.vertex = vertex_name(v);
         place.position = data_.vertices[v].plan();
-        fault(code, "vertex " + std::to_string(v) + " " + what, place);
+        fault(code, "vertex " + std::to_string(*place.vertex) + " " + what, place);
     }
 
     void check_coordinates();
@@ -62,6 +67,7 @@ class TinBuilder {
     void index_hints();
 
     const MeshData& data_;
+    const MeshNames& names_;
     Tin tin_;
     Errors errors_;
     std::vector<bool> bad_vertex_;           ///< whose coordinates are at fault
@@ -87,8 +93,9 @@ void TinBuilder::check_coordinates() {
             if (std::isfinite(value) && in_coordinate_range(value)) continue;
             bad_vertex_[v] = true;
             ErrorPlace place;
-            place.vertex = v;
-            const std::string which = "vertex " + std::to_string(v) + " has a coordinate ";
+            place.vertex = vertex_name(v);
+            const std::string which =
+                "vertex " + std::to_string(*place.vertex) + " has a coordinate ";
             if (std::isfinite(value))
                 fault(ErrorCode::CoordinateOutOfRange,
                       which + "out of range: zero and magnitudes from 1e-60 to 1e15 are accepted",
@@ -180,8 +187,9 @@ void TinBuilder::link() {
                 continue;
             }
             triangle_fault(ErrorCode::EdgeNotManifold, t,
-                           "repeats the edge from vertex " + std::to_string(from.value) + " to " +
-                               std::to_string(to.value) +
+                           "repeats the edge from vertex " +
+                               std::to_string(vertex_name(from.value)) + " to " +
+                               std::to_string(vertex_name(to.value)) +
                                " of another triangle on the same side: they overlap");
         }
     }
@@ -344,8 +352,8 @@ void TinBuilder::index_hints() {
     }
 }
 
-Result<Tin> build_tin(const MeshData& data) {
-    return TinBuilder(data).build();
+Result<Tin> build_tin(const MeshData& data, const MeshNames& names) {
+    return TinBuilder(data, names).build();
 }
 
 }  // namespace tinsmith::core
