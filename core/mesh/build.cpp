@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/mesh/components.hpp"
+#include "core/mesh/overlap.hpp"
 #include "core/predicates/orientation.hpp"
 #include "core/types/range.hpp"
 
@@ -23,6 +24,8 @@ class TinBuilder {
         link();
         if (!errors_.empty()) return std::move(errors_);
         collect_fans();
+        if (!errors_.empty()) return std::move(errors_);
+        check_overlaps();
         if (!errors_.empty()) return std::move(errors_);
         index();
         return std::move(tin_);
@@ -63,6 +66,7 @@ class TinBuilder {
     void check_copies();
     Side side_at(VertexId v) const;
     void folded_fault(VertexId named);
+    void check_overlaps();
     void index();
     void index_hints();
 
@@ -312,6 +316,26 @@ void TinBuilder::folded_fault(VertexId named) {
     vertex_fault(ErrorCode::VertexFolded, named.index(),
                  "has triangles around it that overlap one another: a TIN has one elevation at "
                  "each position");
+}
+
+/// What no edge and no vertex shows: parts that lie over one another, and cliffs.
+void TinBuilder::check_overlaps() {
+    for (const Overlap& overlap : find_overlaps(tin_, kMaxFaults)) {
+        if (overlap.triangle.valid()) {
+            triangle_fault(ErrorCode::MeshOverlaps, overlap.triangle.index(),
+                           "lies over or under another part of the mesh: a TIN has one elevation "
+                           "at each position");
+            errors_.back().place.position = overlap.place;
+            continue;
+        }
+        const auto copied = std::find_if(copies_.begin(), copies_.end(), [&](const auto& copy) {
+            return copy.second == overlap.vertex;
+        });
+        const VertexId named = copied == copies_.end() ? overlap.vertex : copied->first;
+        vertex_fault(ErrorCode::ElevationTwice, named.index(),
+                     "lies where another vertex has another elevation: a TIN has one at each "
+                     "position");
+    }
 }
 
 void TinBuilder::index() {

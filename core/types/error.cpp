@@ -25,6 +25,8 @@ std::string_view code_name(ErrorCode code) {
             return "VERTEX_FOLDED";
         case ErrorCode::MeshTooLarge:
             return "MESH_TOO_LARGE";
+        case ErrorCode::MeshOverlaps:
+            return "MESH_OVERLAPS";
         case ErrorCode::RingTooShort:
             return "RING_TOO_SHORT";
         case ErrorCode::LineTooShort:
