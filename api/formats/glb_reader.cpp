@@ -269,24 +269,31 @@ class SceneReader {
         }
         starts_->push_back({mesh.triangles.size(), primitive.pointer});
         const bool mirrored = is_mirrored(matrix);
-        std::vector<std::uint32_t> numbers(geometry.positions.size(), UINT32_MAX);
-        for (const Corners& corners : geometry.triangles) {
-            Corners out{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                std::uint32_t& number = numbers[corners[i]];
-                if (number == UINT32_MAX) number = number_of(corners[i], geometry, primitive);
-                out[mirrored && i > 0 ? 3 - i : i] = number;
-            }
-            if (mesh.vertices.size() > limits_.max_vertices)
-                return log_.add(FaultKind::TooLarge,
-                                {"TOO_MANY_VERTICES",
-                                 "The scene has more than " + std::to_string(limits_.max_vertices) +
-                                     " vertices; no more are taken.",
-                                 primitive.pointer});
-            mesh.triangles.push_back(out);
+        const auto numbers = numbers_of(geometry, primitive);
+        if (mesh.vertices.size() > limits_.max_vertices)
+            return log_.add(FaultKind::TooLarge,
+                            {"TOO_MANY_VERTICES",
+                             "The scene has more than " + std::to_string(limits_.max_vertices) +
+                                 " vertices; no more are taken.",
+                             primitive.pointer});
+        for (const auto& [a, b, c] : geometry.triangles) {
+            mesh.triangles.push_back({numbers[a], numbers[b], numbers[c]});
+            if (mirrored) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
         }
         for (const auto& [from, to] : geometry.lines)
             lines_.push_back({geometry.positions[from], geometry.positions[to]});
+    }
+
+    /// Of the vertices that triangles use, in the order of the vertices.
+    std::vector<std::uint32_t> numbers_of(const Geometry& geometry,
+                                          const GltfPrimitive& primitive) {
+        std::vector<std::uint32_t> numbers(geometry.positions.size(), UINT32_MAX);
+        for (const Corners& corners : geometry.triangles)
+            for (const std::uint32_t v : corners)
+                numbers[v] = 0;
+        for (std::uint32_t v = 0; v < numbers.size(); ++v)
+            if (numbers[v] == 0) numbers[v] = number_of(v, geometry, primitive);
+        return numbers;
     }
 
     std::uint32_t number_of(std::uint32_t v, const Geometry& geometry,
