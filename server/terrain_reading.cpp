@@ -2,7 +2,6 @@
 #include "server/terrain_reading.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <span>
 #include <utility>
 
@@ -100,12 +99,23 @@ bool is_obj(std::string_view bytes) {
     return std::ranges::find(kWords, first_word(bytes)) != std::end(kWords);
 }
 
-/// A glTF as JSON: its first member but for spaces would be enough for most, but any may come
-/// first.
+/// A glTF as JSON, by its first member: none of them is a member of our own JSON.
 bool is_gltf(std::string_view bytes) {
-    constexpr std::size_t kLook = 4096;
-    const std::string_view begin = bytes.substr(0, kLook);
-    return first_word(bytes).starts_with('{') && begin.find("\"asset\"") != begin.npos;
+    constexpr std::string_view kNames[] = {"accessors",   "animations",     "asset",
+                                           "bufferViews", "buffers",        "cameras",
+                                           "extensions",  "extensionsUsed", "extensionsRequired",
+                                           "extras",      "images",         "materials",
+                                           "meshes",      "nodes",          "samplers",
+                                           "scene",       "scenes",         "skins",
+                                           "textures"};
+    constexpr std::string_view kSpaces = " \t\r\n";
+    bytes.remove_prefix(std::min(bytes.find_first_not_of(kSpaces), bytes.size()));
+    if (!bytes.starts_with('{')) return false;
+    bytes.remove_prefix(1);
+    bytes.remove_prefix(std::min(bytes.find_first_not_of(kSpaces), bytes.size()));
+    if (!bytes.starts_with('"')) return false;
+    const std::string_view name = bytes.substr(1, bytes.find('"', 1) - 1);
+    return std::ranges::find(kNames, name) != std::end(kNames);
 }
 
 bool is_xml(std::string_view bytes) {

@@ -55,6 +55,9 @@ TEST_F(TerrainRoutes, KnowFormatsByTheirFirstBytes) {
     EXPECT_EQ(terrain_format_of("\xEF\xBB\xBF\n<LandXML>"), TerrainFormat::LandXml);
     EXPECT_EQ(terrain_format_of("glTF\2"), TerrainFormat::Glb);
     EXPECT_EQ(terrain_format_of(R"({"asset": {"version": "2.0"}})"), TerrainFormat::Glb);
+    EXPECT_EQ(terrain_format_of("\n{ \"bufferViews\": []}"), TerrainFormat::Glb);
+    EXPECT_EQ(terrain_format_of(R"({"name": "asset"})"), TerrainFormat::Json);
+    EXPECT_EQ(terrain_format_of("{"), TerrainFormat::Json);
     EXPECT_EQ(terrain_format_of(kSquare), TerrainFormat::Json);
     EXPECT_EQ(terrain_format_of(""), TerrainFormat::Json);
     EXPECT_EQ(terrain_format_of("vertices"), TerrainFormat::Json);
