@@ -56,9 +56,9 @@ TEST(Obj, CutsFacesAboutACornerThatSeesAllOthers) {
     // An arrow's head: from its notch or its tip only.
     EXPECT_EQ(read_obj("v 4 4 0\nv 0 3 0\nv 3 3 0\nv 3 0 0\nf 4 1 2 3", {})->mesh.triangles,
               (Triangles{{0, 1, 2}, {0, 2, 3}}));
-    EXPECT_EQ(
-        codes("v 0 0 0\nv 9 0 0\nv 9 3 0\nv 6 3 0\nv 6 1 0\nv 3 1 0\nv 3 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8"),
-        "OBJ_POLYGON");
+    EXPECT_EQ(codes("v 0 0 0\nv 9 0 0\nv 9 3 0\nv 6 3 0\nv 6 1 0\nv 3 1 0\nv 3 3 0\nv 0 3 0\nf 1 2 "
+                    "3 4 5 6 7 8"),
+              "OBJ_POLYGON");
     // The other way round: as it is, for the builder to name.
     EXPECT_EQ(read_obj(std::string(kCorners) + "f 4 3 2 1", {})->mesh.triangles,
               (Triangles{{3, 2, 1}, {3, 1, 0}}));
