@@ -23,19 +23,31 @@ Json text_or_null(const std::string& text) {
     return text.empty() ? Json(nullptr) : Json(text);
 }
 
+Json json_of_repairs(const std::vector<core::Repair>& repairs) {
+    Json list = Json::array();
+    for (const core::Repair& repair : repairs)
+        list.push_back({{"code", core::repair_name(repair.kind)},
+                        {"count", repair.count},
+                        {"indices", repair.indices}});
+    return list;
+}
+
 Json json_of_session(const SessionView& s) {
     const core::Point3& low = s.bounds.min;
     const core::Point3& high = s.bounds.max;
-    return {{"id", s.id},
-            {"name", s.name},
-            {"crs", text_or_null(s.crs)},
-            {"unit", s.unit},
-            {"version", s.version},
-            {"vertices", s.vertices},
-            {"triangles", s.triangles},
-            {"bounds", {low.x, low.y, low.z, high.x, high.y, high.z}},
-            {"polygons", s.polygons},
-            {"memory_bytes", s.memory_bytes}};
+    Json json = {{"id", s.id},
+                 {"name", s.name},
+                 {"crs", text_or_null(s.crs)},
+                 {"unit", s.unit},
+                 {"version", s.version},
+                 {"vertices", s.vertices},
+                 {"triangles", s.triangles},
+                 {"bounds", {low.x, low.y, low.z, high.x, high.y, high.z}},
+                 {"polygons", s.polygons},
+                 {"memory_bytes", s.memory_bytes}};
+    if (s.repairs) json["repairs"] = json_of_repairs(*s.repairs);
+    if (!s.notes.empty()) json["notes"] = s.notes;
+    return json;
 }
 
 Json json_of_outside(const std::vector<core::OutsidePart>& parts) {
@@ -123,14 +135,16 @@ std::string write_report(const ReportView& view) {
         polygons.push_back(json_of_shape(view.polygon_ids[i], view.report.shapes[i]));
     }
     const core::StageTimes& times = view.report.time_ms;
-    return text_of(
-        {{"session", view.session.empty() ? Json(nullptr) : Json(view.session)},
-         {"version", view.version},
-         {"dry_run", view.dry_run},
-         {"polygons", std::move(polygons)},
-         {"totals", json_of_counts(total_of(view.report))},
-         {"time_ms",
-          {{"locate", times.locate}, {"integrate", times.integrate}, {"improve", times.improve}}}});
+    Json json = {
+        {"session", view.session.empty() ? Json(nullptr) : Json(view.session)},
+        {"version", view.version},
+        {"dry_run", view.dry_run},
+        {"polygons", std::move(polygons)},
+        {"totals", json_of_counts(total_of(view.report))},
+        {"time_ms",
+         {{"locate", times.locate}, {"integrate", times.integrate}, {"improve", times.improve}}}};
+    if (view.repairs) json["repairs"] = json_of_repairs(*view.repairs);
+    return text_of(json);
 }
 
 std::string write_mesh_json(const core::MeshData& mesh) {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/integrate/report.hpp"
+#include "core/mesh/repair.hpp"
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
 
@@ -25,6 +28,8 @@ struct SessionView {
     core::Bounds bounds;
     std::size_t polygons = 0;
     std::size_t memory_bytes = 0;
+    std::optional<std::vector<core::Repair>> repairs = std::nullopt;  ///< left out without
+    std::vector<std::string> notes = {};                              ///< left out when empty
 };
 
 /// What is told of an edit. `polygon_ids` and `report.shapes` go together, one for one.
@@ -34,6 +39,8 @@ struct ReportView {
     bool dry_run = false;
     std::span<const std::string> polygon_ids;
     const core::Report& report;
+    /// Of the terrain, where it came with the request and mending was asked for.
+    std::optional<std::vector<core::Repair>> repairs = std::nullopt;
 };
 
 /// All bodies are JSON texts that end with a newline. Numbers read back to the same double.

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/mesh/repair.hpp"
 #include "core/types/mesh_data.hpp"
 
 namespace tinsmith::api {
@@ -11,7 +16,7 @@ namespace tinsmith::api {
 /// option contradict each other, the terrain is refused.
 struct TerrainOptions {
     bool repair = false;  ///< mend what can be mended safely, and tell each repair
-    double weld = 0.0;    ///< with `repair`: vertices no farther apart in plan become one
+    double weld = 0.0;    ///< with `repair`: vertices no farther apart than this become one
     std::string project;  ///< degrees: "auto" or the system to warp to; empty: refuse them
     std::string crs;      ///< "EPSG:32616"; empty: what the bytes say
     std::string unit;     ///< "metre"; empty: what the bytes or the system say
@@ -20,9 +25,17 @@ struct TerrainOptions {
 /// A terrain as any reader delivers it: mesh buffers and what is known of their coordinates.
 struct Terrain {
     core::MeshData mesh;
-    std::string name;            ///< empty: none given
-    std::string crs;             ///< "EPSG:32616"; empty: unknown
-    std::string unit = "metre";  ///< unit of all three coordinates
+    std::string name;                ///< empty: none given
+    std::string crs;                 ///< "EPSG:32616"; empty: unknown
+    std::string unit = "metre";      ///< unit of all three coordinates
+    bool unit_is_said = false;       ///< by the bytes; otherwise it is only assumed
+    std::vector<std::string> notes;  ///< what was passed over, a sentence each, for people
+    /// Where a vertex or a triangle stands in the bytes, for people: "line 12". Empty: its index
+    /// says it as well.
+    std::function<std::string(std::size_t)> vertex_place;
+    std::function<std::string(std::size_t)> triangle_place;
+    /// Where mending was asked for: what was done.
+    std::optional<std::vector<core::Repair>> repairs;
 };
 
 }  // namespace tinsmith::api

@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "api/terrain_options.hpp"
+
 namespace tinsmith::server {
 
 namespace {
@@ -190,10 +192,13 @@ CLI::App* add_integrate(CLI::App& app, IntegrateConfig& config) {
     CLI::App* integrate =
         app.add_subcommand("integrate", "Cut polygons into a terrain and write it as GLB");
     integrate->footer(kIntegrateFooter);
-    integrate->add_option("TERRAIN", config.terrain, "GeoTIFF or JSON")->required();
+    integrate->add_option("TERRAIN", config.terrain, "GeoTIFF, glTF, OBJ, LandXML or JSON")
+        ->required();
     integrate->add_option("POLYGONS", config.polygons, "GeoJSON")->required();
     integrate->add_option("-o,--output", config.output, "The mesh as GLB")->required();
     integrate->add_option("--report", config.report, "The report as JSON");
+    add_request_options(*integrate, api::terrain_option_names_beside(), "Terrain",
+                        config.terrain_options);
     add_request_options(*integrate, api::polygon_option_names(), "Polygons",
                         config.polygon_options);
     add_request_options(*integrate, api::mesh_option_names(), "Mesh", config.mesh_options);
@@ -202,7 +207,8 @@ CLI::App* add_integrate(CLI::App& app, IntegrateConfig& config) {
 
 CLI::App* add_check(CLI::App& app, CheckConfig& config) {
     CLI::App* check = app.add_subcommand("check", "List every broken law of a mesh");
-    check->add_option("MESH", config.mesh, "GeoTIFF or JSON")->required();
+    check->add_option("MESH", config.mesh, "GeoTIFF, glTF, OBJ, LandXML or JSON")->required();
+    add_request_options(*check, api::terrain_option_names(), "Terrain", config.terrain_options);
     return check;
 }
 

@@ -30,11 +30,13 @@ struct IntegrateConfig {
     std::string report;  ///< empty: none
     std::vector<api::NamedOption> polygon_options;
     std::vector<api::NamedOption> mesh_options;
+    std::vector<api::NamedOption> terrain_options;
 };
 
 /// `tinsmith check`.
 struct CheckConfig {
     std::string mesh;
+    std::vector<api::NamedOption> terrain_options;
 };
 
 inline constexpr int kExitOk = 0;

@@ -55,12 +55,16 @@ Session::Session(SessionFacts facts, core::Tin tin, HistoryLimits limits)
     view_.name = facts_.name;
     view_.crs = facts_.crs;
     view_.unit = facts_.unit;
+    view_.repairs = facts_.repairs;
+    view_.notes = facts_.notes;
     refresh_view();
 }
 
 std::shared_ptr<Session> Session::fork(std::string id, std::string birth) const {
     const auto lock = lock_to_read();
-    SessionFacts facts{std::move(id), std::move(birth), facts_.name, facts_.crs, facts_.unit};
+    SessionFacts facts = facts_;
+    facts.id = std::move(id);
+    facts.birth = std::move(birth);
     auto copy = std::make_shared<Session>(std::move(facts), tin_);
     copy->history_ = history_;
     copy->next_polygon_ = next_polygon_;

@@ -14,6 +14,7 @@
 #include "api/formats/geojson_writer.hpp"
 #include "api/responses.hpp"
 #include "core/integrate/integrator.hpp"
+#include "core/mesh/repair.hpp"
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
 #include "server/change.hpp"
@@ -31,6 +32,8 @@ struct SessionFacts {
     std::string name;
     std::string crs;  ///< empty: unknown
     std::string unit;
+    std::optional<std::vector<core::Repair>> repairs = std::nullopt;  ///< nothing: not asked for
+    std::vector<std::string> notes = {};  ///< on what its reader passed over
 };
 
 /// A mesh at one version, copied out so that it can be encoded while the session goes on.

@@ -10,8 +10,13 @@ namespace tinsmith::server {
 
 SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
                                       std::optional<std::string> id) {
-    SessionFacts facts{id ? std::move(*id) : random_uuid(), random_hex(8), about.name, about.crs,
-                       about.unit};
+    SessionFacts facts{id ? std::move(*id) : random_uuid(),
+                       random_hex(8),
+                       about.name,
+                       about.crs,
+                       about.unit,
+                       about.repairs,
+                       about.notes};
     const HistoryLimits history{limits_.max_history, limits_.max_history_bytes};
     return keep(std::make_shared<Session>(std::move(facts), std::move(tin), history));
 }

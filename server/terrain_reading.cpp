@@ -7,16 +7,26 @@
 
 #include "api/formats/csv.hpp"
 #include "api/formats/geotiff.hpp"
+#include "api/formats/glb_reader.hpp"
+#include "api/formats/landxml_reader.hpp"
+#include "api/formats/obj_reader.hpp"
 #include "api/formats/terrain_json.hpp"
+#include "api/terrain_options.hpp"
 #include "core/mesh/build.hpp"
+#include "core/mesh/repair.hpp"
 #include "server/work.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
-api::Fault fault_of(const core::Error& error, TerrainFormat format) {
+/// The fault in the body's own places.
+api::Fault fault_of(const core::Error& error, TerrainFormat format, const api::Terrain& about) {
     api::Fault fault{std::string(core::code_name(error.code)), error.detail, {}};
+    if (error.place.triangle && about.triangle_place)
+        fault.detail += " (" + about.triangle_place(*error.place.triangle) + ")";
+    else if (error.place.vertex && about.vertex_place)
+        fault.detail += " (" + about.vertex_place(*error.place.vertex) + ")";
     const bool is_json = format == TerrainFormat::Json;
     if (error.place.triangle) {
         fault.index = *error.place.triangle;
@@ -42,6 +52,10 @@ struct Reader {
 constexpr std::string_view kJsonTypes[] = {"application/json"};
 constexpr std::string_view kTiffTypes[] = {"image/tiff", "image/geotiff"};
 constexpr std::string_view kCsvTypes[] = {"text/csv"};
+constexpr std::string_view kGlbTypes[] = {"model/gltf-binary", "model/gltf+json"};
+constexpr std::string_view kObjTypes[] = {"model/obj"};
+constexpr std::string_view kLandXmlTypes[] = {"application/xml", "text/xml",
+                                              "application/landxml+xml"};
 
 constexpr Reader kReaders[] = {
     {TerrainFormat::Json, kJsonTypes,
@@ -53,10 +67,99 @@ constexpr Reader kReaders[] = {
          return api::read_geotiff(bytes, limits);
      }},
     {TerrainFormat::Csv, kCsvTypes, api::read_csv},
+    {TerrainFormat::Glb, kGlbTypes,
+     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
+         return api::read_glb(bytes, limits);
+     }},
+    {TerrainFormat::Obj, kObjTypes,
+     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
+         return api::read_obj(bytes, limits);
+     }},
+    {TerrainFormat::LandXml, kLandXmlTypes,
+     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
+         return api::read_landxml(bytes, limits);
+     }},
 };
 
 const Reader& reader_of(TerrainFormat format) {
     return *std::ranges::find(kReaders, format, &Reader::format);
+}
+
+/// The first word of the first line that is neither empty nor a comment.
+std::string_view first_word(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
+        if (begin == bytes.npos) return {};
+        bytes.remove_prefix(begin);
+        if (bytes.front() != '#') return bytes.substr(0, bytes.find_first_of(" \t\r\n"));
+        bytes.remove_prefix(std::min(bytes.find('\n'), bytes.size()));
+    }
+    return {};
+}
+
+bool is_obj(std::string_view bytes) {
+    constexpr std::string_view kWords[] = {"v", "vt", "vn", "o", "g", "s", "mtllib", "usemtl"};
+    return std::ranges::find(kWords, first_word(bytes)) != std::end(kWords);
+}
+
+/// A glTF as JSON, by its first member: none of them is a member of our own JSON.
+bool is_gltf(std::string_view bytes) {
+    constexpr std::string_view kNames[] = {"accessors",   "animations",     "asset",
+                                           "bufferViews", "buffers",        "cameras",
+                                           "extensions",  "extensionsUsed", "extensionsRequired",
+                                           "extras",      "images",         "materials",
+                                           "meshes",      "nodes",          "samplers",
+                                           "scene",       "scenes",         "skins",
+                                           "textures"};
+    constexpr std::string_view kSpaces = " \t\r\n";
+    bytes.remove_prefix(std::min(bytes.find_first_not_of(kSpaces), bytes.size()));
+    if (!bytes.starts_with('{')) return false;
+    bytes.remove_prefix(1);
+    bytes.remove_prefix(std::min(bytes.find_first_not_of(kSpaces), bytes.size()));
+    if (!bytes.starts_with('"')) return false;
+    const std::string_view name = bytes.substr(1, bytes.find('"', 1) - 1);
+    return std::ranges::find(kNames, name) != std::end(kNames);
+}
+
+bool is_xml(std::string_view bytes) {
+    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+    return first_word(bytes).starts_with('<');
+}
+
+/// Systems and units are settled, and what the options ask for is mended; then the mesh is built.
+api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
+                                 const api::TerrainOptions& options) {
+    if (auto fault = api::settle_system(terrain, options)) {
+        const bool is_degrees = fault->code == "CRS_GEOGRAPHIC";
+        return {is_degrees ? api::FaultKind::Unsupported : api::FaultKind::Invalid,
+                *std::move(fault)};
+    }
+    core::Repaired repaired;
+    if (options.repair) {
+        repaired = core::repair_mesh(terrain.mesh, options.weld);
+        terrain.repairs = std::move(repaired.repairs);
+    }
+    auto tin = core::build_tin(terrain.mesh, {repaired.vertices, repaired.triangles});
+    if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
+    if (!tin) {
+        api::Faults faults;
+        auto kind = api::FaultKind::Invalid;
+        for (const core::Error& error : tin.errors()) {
+            if (error.code == core::ErrorCode::MeshTooLarge) kind = api::FaultKind::TooLarge;
+            faults.push_back(fault_of(error, format, terrain));
+        }
+        return {kind, std::move(faults)};
+    }
+    terrain.mesh = {};
+    terrain.vertex_place = {};
+    terrain.triangle_place = {};
+    return LoadedTerrain{std::move(terrain), std::move(*tin)};
+}
+
+/// Only rasters are warped.
+bool is_mesh_file(TerrainFormat format) {
+    return format == TerrainFormat::Glb || format == TerrainFormat::Obj ||
+           format == TerrainFormat::LandXml;
 }
 
 }  // namespace
@@ -67,8 +170,10 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     const bool is_tiff = bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv) ||
                          bytes.starts_with("II+\0"sv) || bytes.starts_with("MM\0+"sv);
     if (is_tiff) return TerrainFormat::GeoTiff;
+    if (bytes.starts_with("glTF") || is_gltf(bytes)) return TerrainFormat::Glb;
+    if (is_xml(bytes)) return TerrainFormat::LandXml;
     if (api::looks_like_csv(bytes)) return TerrainFormat::Csv;
-    return TerrainFormat::Json;
+    return is_obj(bytes) ? TerrainFormat::Obj : TerrainFormat::Json;
 }
 
 std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
@@ -81,23 +186,18 @@ std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::TerrainOptions& options,
                                         const api::ReadLimits& limits) {
+    if (is_mesh_file(format) && !options.project.empty()) {
+        return {
+            api::FaultKind::Invalid,
+            api::Fault{"PROJECT_OF_MESH",
+                       "Only rasters and points are projected, not triangles: leave project out.",
+                       {}}};
+    }
     begin_stage(0.4);
     auto terrain = reader_of(format).read(bytes, options, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
-    auto tin = core::build_tin(terrain->mesh);
-    if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
-    if (!tin) {
-        api::Faults faults;
-        auto kind = api::FaultKind::Invalid;
-        for (const core::Error& error : tin.errors()) {
-            if (error.code == core::ErrorCode::MeshTooLarge) kind = api::FaultKind::TooLarge;
-            faults.push_back(fault_of(error, format));
-        }
-        return {kind, std::move(faults)};
-    }
-    terrain->mesh = {};
-    return LoadedTerrain{std::move(*terrain), std::move(*tin)};
+    return built(std::move(*terrain), format, options);
 }
 
 }  // namespace tinsmith::server

@@ -13,9 +13,10 @@
 
 namespace tinsmith::server {
 
-enum class TerrainFormat { Json, GeoTiff, Csv };
+enum class TerrainFormat { Json, GeoTiff, Csv, Glb, Obj, LandXml };
 
-/// By the first bytes: a TIFF says so, lines of numbers are CSV, anything else is read as JSON.
+/// By the first bytes: a TIFF, a glTF, XML and an OBJ say so, lines of numbers are CSV, anything
+/// else is read as JSON.
 TerrainFormat terrain_format_of(std::string_view bytes);
 
 /// By a media type, lower-case; nothing where that is no terrain's.
@@ -27,8 +28,8 @@ struct LoadedTerrain {
     core::Tin tin;
 };
 
-/// Reads and builds in one go, the same for requests, the demo and the command line. Faults of the
-/// mesh come back in the body's own places.
+/// Reads, mends where that is asked for, and builds in one go, the same for requests, the demo and
+/// the command line. Faults of the mesh come back in the body's own places.
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::TerrainOptions& options,
                                         const api::ReadLimits& limits);

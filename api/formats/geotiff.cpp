@@ -250,14 +250,13 @@ std::optional<Refused> Raster::read_crs() {
 std::optional<Refused> Raster::check_units(OGRSpatialReferenceH srs) {
     char* name = nullptr;
     const double metres = OSRGetLinearUnits(srs, &name);
-    bool known = false;
     for (const std::string_view unit : {"metre", "foot", "US survey foot"}) {
         // By length and not by name, of which there are many; the two feet differ by 2e-6.
         if (std::fabs(metres - metres_per(unit)) > 1e-9) continue;
         terrain_.unit = unit;
-        known = true;
+        terrain_.unit_is_said = true;
     }
-    if (!known) {
+    if (!terrain_.unit_is_said) {
         return refused(FaultKind::Unsupported, "UNIT_UNKNOWN",
                        "The raster's coordinates are in a unit of " + std::to_string(metres) +
                            " metres. Known are metre, foot and US survey foot.");

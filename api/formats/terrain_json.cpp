@@ -267,6 +267,7 @@ class Body : public Object {
             terrain_.mesh = std::move(*mesh);
         }
         if (!log.empty()) return std::move(log).refusal<Terrain>();
+        terrain_.unit_is_said = has("unit");
         return std::move(terrain_);
     }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/mesh/components.hpp"
+#include "core/mesh/overlap.hpp"
 #include "core/predicates/orientation.hpp"
 #include "core/types/range.hpp"
 
@@ -14,7 +15,7 @@ namespace tinsmith::core {
 /// Builds in passes, each of which needs what the earlier ones proved.
 class TinBuilder {
   public:
-    explicit TinBuilder(const MeshData& data) : data_(data) {}
+    TinBuilder(const MeshData& data, const MeshNames& names) : data_(data), names_(names) {}
 
     Result<Tin> build() {
         check_coordinates();
@@ -24,6 +25,8 @@ class TinBuilder {
         if (!errors_.empty()) return std::move(errors_);
         collect_fans();
         if (!errors_.empty()) return std::move(errors_);
+        check_overlaps();
+        if (!errors_.empty()) return std::move(errors_);
         index();
         return std::move(tin_);
     }
@@ -32,18 +35,23 @@ class TinBuilder {
     void fault(ErrorCode code, std::string detail, ErrorPlace place) {
         if (errors_.size() < kMaxFaults) errors_.push_back({code, std::move(detail), place});
     }
+    static std::size_t name(std::span<const std::uint32_t> names, std::size_t i) {
+        return i < names.size() ? names[i] : i;
+    }
+    std::size_t triangle_name(std::size_t t) const { return name(names_.triangles, t); }
+    std::size_t vertex_name(std::size_t v) const { return name(names_.vertices, v); }
     void triangle_fault(ErrorCode code, std::size_t t, const std::string& what) {
         ErrorPlace place;
-        place.triangle = t;
+        place.triangle = triangle_name(t);
         const std::uint32_t v = data_.triangles[t][0];
         if (v < data_.vertices.size()) place.position = data_.vertices[v].plan();
-        fault(code, "triangle " + std::to_string(t) + " " + what, place);
+        fault(code, "triangle " + std::to_string(*place.triangle) + " " + what, place);
     }
     void vertex_fault(ErrorCode code, std::size_t v, const std::string& what) {
         ErrorPlace place;
-        place.vertex = v;
+        place.vertex = vertex_name(v);
         place.position = data_.vertices[v].plan();
-        fault(code, "vertex " + std::to_string(v) + " " + what, place);
+        fault(code, "vertex " + std::to_string(*place.vertex) + " " + what, place);
     }
 
     void check_coordinates();
@@ -58,10 +66,12 @@ class TinBuilder {
     void check_copies();
     Side side_at(VertexId v) const;
     void folded_fault(VertexId named);
+    void check_overlaps();
     void index();
     void index_hints();
 
     const MeshData& data_;
+    const MeshNames& names_;
     Tin tin_;
     Errors errors_;
     std::vector<bool> bad_vertex_;           ///< whose coordinates are at fault
@@ -87,8 +97,9 @@ void TinBuilder::check_coordinates() {
             if (std::isfinite(value) && in_coordinate_range(value)) continue;
             bad_vertex_[v] = true;
             ErrorPlace place;
-            place.vertex = v;
-            const std::string which = "vertex " + std::to_string(v) + " has a coordinate ";
+            place.vertex = vertex_name(v);
+            const std::string which =
+                "vertex " + std::to_string(*place.vertex) + " has a coordinate ";
             if (std::isfinite(value))
                 fault(ErrorCode::CoordinateOutOfRange,
                       which + "out of range: zero and magnitudes from 1e-60 to 1e15 are accepted",
@@ -180,8 +191,9 @@ void TinBuilder::link() {
                 continue;
             }
             triangle_fault(ErrorCode::EdgeNotManifold, t,
-                           "repeats the edge from vertex " + std::to_string(from.value) + " to " +
-                               std::to_string(to.value) +
+                           "repeats the edge from vertex " +
+                               std::to_string(vertex_name(from.value)) + " to " +
+                               std::to_string(vertex_name(to.value)) +
                                " of another triangle on the same side: they overlap");
         }
     }
@@ -306,6 +318,26 @@ void TinBuilder::folded_fault(VertexId named) {
                  "each position");
 }
 
+/// What no edge and no vertex shows: parts that lie over one another, and cliffs.
+void TinBuilder::check_overlaps() {
+    for (const Overlap& overlap : find_overlaps(tin_, kMaxFaults)) {
+        if (overlap.triangle.valid()) {
+            triangle_fault(ErrorCode::MeshOverlaps, overlap.triangle.index(),
+                           "lies over or under another part of the mesh: a TIN has one elevation "
+                           "at each position");
+            errors_.back().place.position = overlap.place;
+            continue;
+        }
+        const auto copied = std::find_if(copies_.begin(), copies_.end(), [&](const auto& copy) {
+            return copy.second == overlap.vertex;
+        });
+        const VertexId named = copied == copies_.end() ? overlap.vertex : copied->first;
+        vertex_fault(ErrorCode::ElevationTwice, named.index(),
+                     "lies where another vertex has another elevation: a TIN has one at each "
+                     "position");
+    }
+}
+
 void TinBuilder::index() {
     const auto& vertices = tin_.vertices_;
     Bounds box{vertices[0].point(), vertices[0].point()};
@@ -344,8 +376,8 @@ void TinBuilder::index_hints() {
     }
 }
 
-Result<Tin> build_tin(const MeshData& data) {
-    return TinBuilder(data).build();
+Result<Tin> build_tin(const MeshData& data, const MeshNames& names) {
+    return TinBuilder(data, names).build();
 }
 
 }  // namespace tinsmith::core

@@ -25,6 +25,8 @@ std::string_view code_name(ErrorCode code) {
             return "VERTEX_FOLDED";
         case ErrorCode::MeshTooLarge:
             return "MESH_TOO_LARGE";
+        case ErrorCode::MeshOverlaps:
+            return "MESH_OVERLAPS";
         case ErrorCode::TooFewPoints:
             return "TOO_FEW_POINTS";
         case ErrorCode::PointsCollinear:

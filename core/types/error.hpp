@@ -25,6 +25,7 @@ enum class ErrorCode {
     TriangleClockwise = 206,      ///< clockwise seen from above
     VertexFolded = 207,           ///< the triangles around a vertex overlap
     MeshTooLarge = 208,           ///< more vertices or triangles than the ids can count
+    MeshOverlaps = 209,           ///< a part of the mesh lies over another
     TooFewPoints = 211,           ///< fewer than three distinct positions to triangulate
     PointsCollinear = 212,        ///< all positions to triangulate are on one line
     // 300: polygons
@@ -32,7 +33,7 @@ enum class ErrorCode {
     LineTooShort = 302,      ///< fewer than two distinct positions in a line
     ShapeEmpty = 303,        ///< no position at all
     ElevationMissing = 304,  ///< a path with elevations of its own lacks one
-    ElevationTwice = 305,    ///< one position with two elevations, also of a terrain's points
+    ElevationTwice = 305,    ///< one position with two elevations, also of a terrain's
     // 400: integration
     OutsideMesh = 401,       ///< nothing of the request meets the mesh
     LeavesMesh = 402,        ///< part of the request is outside and the caller asked to reject that

@@ -25,4 +25,18 @@ void complain(const std::string& text) {
     std::cerr << "tinsmith: " << text << "\n";
 }
 
+void tell_of(const std::string& file, const api::Terrain& terrain) {
+    for (const std::string& note : terrain.notes)
+        complain(file + ": " + note);
+    if (!terrain.repairs) return;
+    for (const core::Repair& repair : *terrain.repairs) {
+        std::string indices;
+        for (const std::size_t index : repair.indices)
+            indices += " " + std::to_string(index);
+        if (repair.count > repair.indices.size()) indices += " ...";
+        complain(file + ": repaired: " + std::string(core::repair_name(repair.kind)) + ": " +
+                 std::to_string(repair.count) + ":" + indices);
+    }
+}
+
 }  // namespace tinsmith::server

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/fault.hpp"
+#include "api/terrain.hpp"
 
 namespace tinsmith::server {
 
@@ -12,5 +13,8 @@ namespace tinsmith::server {
 void complain(const std::string& file, const api::Faults& faults);
 
 void complain(const std::string& text);
+
+/// Writes to standard error what was mended of a terrain and what its reader passed over.
+void tell_of(const std::string& file, const api::Terrain& terrain);
 
 }  // namespace tinsmith::server

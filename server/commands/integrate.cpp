@@ -7,6 +7,7 @@
 #include "api/crs.hpp"
 #include "api/formats/gltf.hpp"
 #include "api/responses.hpp"
+#include "api/terrain_options.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/complaints.hpp"
 #include "server/commands/progress.hpp"
@@ -30,8 +31,9 @@ Limits command_limits() {
     return limits;
 }
 
-std::optional<LoadedTerrain> read_terrain(const std::string& path, const Services& services,
-                                          ProgressBar& bar) {
+std::optional<LoadedTerrain> read_terrain(const std::string& path,
+                                          const api::TerrainOptions& options,
+                                          const Services& services, ProgressBar& bar) {
     bar.name("reading the terrain");
     std::string error;
     const auto bytes = read_file(path, error);
@@ -40,12 +42,14 @@ std::optional<LoadedTerrain> read_terrain(const std::string& path, const Service
         complain(error);
         return std::nullopt;
     }
-    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), {}, services.read_limits());
+    auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), options, services.read_limits());
     if (!terrain) {
         bar.clear();
         complain(path, terrain.faults());
         return std::nullopt;
     }
+    bar.clear();
+    tell_of(path, terrain->about);
     return std::move(*terrain);
 }
 
@@ -101,8 +105,9 @@ int write_results(const IntegrateConfig& config, const Session& session,
         complain(config.output + ": " + error->detail);
         return kExitRefused;
     }
-    const std::string report = api::write_report(
-        {session.facts().name, result.version, dry_run, result.polygon_ids, *result.report});
+    const std::string report =
+        api::write_report({session.facts().name, result.version, dry_run, result.polygon_ids,
+                           *result.report, session.facts().repairs});
     const bool done = write_output(config.output, std::get<api::GltfResult>(written).bytes) &&
                       write_output(config.report, report);
     return done ? kExitOk : kExitRefused;
@@ -118,7 +123,9 @@ int run_integrate(const IntegrateConfig& config) {
     const auto polygon_options =
         api::parse_polygon_options(config.polygon_options, api::OptionList::Part);
     if (!polygon_options) complain("options", polygon_options.faults());
-    if (!mesh_options || !polygon_options) return kExitUsage;
+    const auto terrain_options = api::parse_terrain_options(config.terrain_options);
+    if (!terrain_options) complain("options", terrain_options.faults());
+    if (!mesh_options || !polygon_options || !terrain_options) return kExitUsage;
     if (config.output == config.report) {
         complain("--output and --report are one file, " + config.output + ": name two");
         return kExitUsage;
@@ -126,14 +133,15 @@ int run_integrate(const IntegrateConfig& config) {
     ProgressBar bar;
     Work watched([&bar](double done) { bar.show(done); });
     const WorkScope scope(watched);
-    auto terrain = read_terrain(config.terrain, services, bar);
+    auto terrain = read_terrain(config.terrain, *terrain_options, services, bar);
     if (!terrain) return kExitRefused;
     auto work = read_polygons(config, services, terrain->about.crs, bar);
     if (!work) return kExitRefused;
 
     const std::string name = std::filesystem::path(config.terrain).stem().string();
-    Session session({name, "0", name, terrain->about.crs, terrain->about.unit},
-                    std::move(terrain->tin));
+    Session session(
+        {name, "0", name, terrain->about.crs, terrain->about.unit, terrain->about.repairs},
+        std::move(terrain->tin));
     const bool dry_run = work->edit.dry_run;
     const auto outcome = session.integrate(std::move(work->edit));
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "api/crs.hpp"
@@ -10,6 +11,7 @@
 #include "api/formats/options_reader.hpp"
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
+#include "api/terrain_options.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
@@ -88,7 +90,7 @@ std::optional<TerrainFormat> format_of(const api::FormPart& part) {
 }
 
 std::optional<LoadedTerrain> read_terrain(const Services& services, const api::FormPart& part,
-                                          FormFaults& faults) {
+                                          const api::TerrainOptions& options, FormFaults& faults) {
     const auto format = format_of(part);
     if (!format) {
         faults.add(api::FaultKind::Invalid, kTerrain,
@@ -98,7 +100,7 @@ std::optional<LoadedTerrain> read_terrain(const Services& services, const api::F
                      {}}});
         return std::nullopt;
     }
-    auto terrain = load_terrain(part.body, *format, {}, services.read_limits());
+    auto terrain = load_terrain(part.body, *format, options, services.read_limits());
     if (terrain) return std::move(*terrain);
     faults.add(terrain.kind(), kTerrain, std::move(terrain.faults()));
     return std::nullopt;
@@ -107,9 +109,11 @@ std::optional<LoadedTerrain> read_terrain(const Services& services, const api::F
 struct Options {
     std::vector<api::NamedOption> polygons;
     api::GltfOptions mesh;
+    api::TerrainOptions terrain;
 };
 
-/// The options of the polygons request and of the mesh in one object, by their names.
+/// The options of the polygons request, of the mesh and of the terrain in one object, by their
+/// names.
 Options read_options(const Services& services, const api::FormPart* part, FormFaults& faults) {
     Options options;
     if (part == nullptr) return options;
@@ -118,13 +122,20 @@ Options read_options(const Services& services, const api::FormPart* part, FormFa
         faults.add(read.kind(), kOptions, std::move(read.faults()));
         return options;
     }
-    const auto of_mesh = api::mesh_option_names();
-    std::vector<api::NamedOption> mesh;
+    const auto has = [](std::span<const std::string_view> names, const std::string& name) {
+        return std::ranges::find(names, name) != names.end();
+    };
+    std::vector<api::NamedOption> mesh, terrain;
     for (auto& [name, value] : *read) {
         const std::string pointer = "/" + std::string(kOptions) + "/" + name;
-        const bool is_mesh = std::ranges::find(of_mesh, name) != of_mesh.end();
-        (is_mesh ? mesh : options.polygons).push_back({name, value, pointer});
+        auto& list = has(api::mesh_option_names(), name)             ? mesh
+                     : has(api::terrain_option_names_beside(), name) ? terrain
+                                                                     : options.polygons;
+        list.push_back({name, value, pointer});
     }
+    auto of_terrain = api::parse_terrain_options(terrain);
+    if (of_terrain) options.terrain = *of_terrain;
+    if (!of_terrain) faults.add(of_terrain.kind(), kOptions, std::move(of_terrain.faults()));
     auto parsed = api::parse_mesh_options(mesh);
     if (parsed) options.mesh = *parsed;
     if (!parsed) faults.add(parsed.kind(), kOptions, std::move(parsed.faults()));
@@ -141,8 +152,12 @@ Options read_options(const Services& services, const api::FormPart* part, FormFa
 Response send(const Request& request, const Session& session, const PolygonResult& result,
               bool dry_run, bool as_glb, api::GltfOptions options) {
     if (!as_glb) {
-        return ok(kJson, api::write_report(
-                             {{}, result.version, dry_run, result.polygon_ids, *result.report}));
+        return ok(kJson, api::write_report({{},
+                                            result.version,
+                                            dry_run,
+                                            result.polygon_ids,
+                                            *result.report,
+                                            session.facts().repairs}));
     }
     if (!result.mesh) {
         return refuse(request, api::ProblemType::OutOfMemory,
@@ -162,7 +177,13 @@ Response integrate(Services& services, const Request& request, LoadedTerrain ter
     begin_stage(0.8);
     set_budgets(work.edit, services.limits, services.stopping);
     const bool dry_run = work.edit.dry_run;
-    Session session({{}, {}, terrain.about.name, terrain.about.crs, terrain.about.unit},
+    Session session({{},
+                     {},
+                     terrain.about.name,
+                     terrain.about.crs,
+                     terrain.about.unit,
+                     std::move(terrain.about.repairs),
+                     std::move(terrain.about.notes)},
                     std::move(terrain.tin));
     const auto outcome = session.integrate(std::move(work.edit));
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
@@ -194,7 +215,8 @@ Response integrate_once(Services& services, const Request& request, const PathAr
     const Form form = form_of(*parts, faults);
     const Options options = read_options(services, form.options, faults);
     std::optional<LoadedTerrain> terrain;
-    if (form.terrain != nullptr) terrain = read_terrain(services, *form.terrain, faults);
+    if (form.terrain != nullptr)
+        terrain = read_terrain(services, *form.terrain, options.terrain, faults);
     std::optional<PolygonWork> work;
     if (form.polygons != nullptr) {
         begin_stage(0.1);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "api/requests.hpp"
+#include "api/terrain_options.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/idempotency.hpp"
@@ -66,6 +67,7 @@ std::vector<Route> make_routes(Services& services) {
         return as_json(deferrable(services, to(function), Names::NewSession));
     };
     const auto json = [to](Function function) { return as_json(to(function)); };
+    const auto terrain = api::terrain_option_names();
     const auto mesh = api::mesh_option_names();
     const auto polygons = api::polygon_option_names();
     return {
@@ -81,9 +83,9 @@ std::vector<Route> make_routes(Services& services) {
         {"DELETE", "/v1/jobs/{id}", {}, json(delete_job)},
         {"GET", "/v1/jobs/{id}/result", {}, to(get_job_result)},
         {"GET", "/v1/sessions", kPageParameters, json(list_sessions)},
-        {"POST", "/v1/sessions", {}, as_json(change(create_session))},
+        {"POST", "/v1/sessions", terrain, as_json(change(create_session))},
         {"GET", "/v1/sessions/{id}", {}, json(get_session)},
-        {"PUT", "/v1/sessions/{id}", {}, long_making(put_session)},
+        {"PUT", "/v1/sessions/{id}", terrain, long_making(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
         {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},

@@ -7,6 +7,7 @@
 
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
+#include "api/terrain_options.hpp"
 #include "server/random_id.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
@@ -20,7 +21,8 @@ namespace {
 
 constexpr std::string_view kCursorKind = "session";
 constexpr std::string_view kTerrainTypes =
-    "application/json (mesh, points or grid), image/tiff (GeoTIFF elevations), text/csv (x,y,z)";
+    "application/json (mesh, points or grid), image/tiff (GeoTIFF elevations), text/csv (x,y,z), "
+    "model/gltf-binary, model/gltf+json, model/obj, application/xml (LandXML)";
 
 /// The format by Content-Type, or 415 saying what curl should have been told.
 Step<TerrainFormat> require_terrain_format(const Request& request) {
@@ -58,7 +60,10 @@ Response tell_created(const Session& session) {
 Response make_session(Services& services, const Request& request, std::optional<std::string> id) {
     const auto format = require_terrain_format(request);
     if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
-    auto terrain = load_terrain(request.body, std::get<0>(format), {}, services.read_limits());
+    const auto options = api::parse_terrain_options(options_of_query(request));
+    if (!options) return refuse(request, api::problem_of_faults(options.kind(), options.faults()));
+    auto terrain =
+        load_terrain(request.body, std::get<0>(format), *options, services.read_limits());
     if (!terrain) {
         return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
     }

@@ -19,7 +19,7 @@ using core::Shape;
 
 namespace {
 
-/// Whether triangles lie over one another, which `build_tin` does not look for. Cost: quadratic.
+/// Whether triangles lie over one another, without `build_tin`. Cost: quadratic.
 bool overlaps(const core::MeshData& mesh) {
     const auto plan = [&](std::uint32_t v) { return mesh.vertices[v].plan(); };
     for (const auto& t : mesh.triangles) {

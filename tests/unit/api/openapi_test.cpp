@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/requests.hpp"
+#include "api/terrain_options.hpp"
 
 namespace tinsmith::api {
 namespace {
@@ -154,9 +155,10 @@ TEST(OpenApiOptions, AreThoseOfMeshes) {
     EXPECT_EQ(said->normals, unsaid->normals);
 }
 
-TEST(OpenApiOptions, OfOneRequestForAllAreBoth) {
+TEST(OpenApiOptions, OfOneRequestForAllAreThoseOfItsParts) {
     Names wanted;
-    for (const auto names : {polygon_option_names(), mesh_option_names()})
+    for (const auto names :
+         {polygon_option_names(), mesh_option_names(), terrain_option_names_beside()})
         wanted.insert(names.begin(), names.end());
     // There is one version and nothing that a box could leave out.
     wanted.erase("version");

@@ -1,61 +1,145 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terrains of points, as a client sends them.
-#include <fstream>
-#include <iterator>
-
+// How a terrain's bytes are taken: formats by their type, options, repair.
+#include "api/formats/gltf.hpp"
+#include "server/terrain_reading.hpp"
 #include "tests/unit/server/handlers.hpp"
 
 namespace tinsmith::server {
 namespace {
 
+constexpr const char* kObj = "# square\nv 0 0 0\nv 10 0 1\nv 10 10 2\nv 0 10 3\nf 1 2 3 4\n";
+constexpr const char* kLandXml =
+    R"(<?xml version="1.0"?><LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2">
+<Units><Metric linearUnit="meter"/></Units><CoordinateSystem epsgCode="32616"/>
+<Surfaces><Surface name="Square"><Definition surfType="TIN"><Pnts>
+<P id="7">0 0 0</P><P id="8">0 10 1</P><P id="9">10 10 2</P><P id="3">10 0 3</P>
+</Pnts><Faces><F>7 8 9</F><F>7 9 3</F></Faces></Definition></Surface></Surfaces></LandXML>)";
+/// A triangle twice, once the other way round, one without area, a vertex twice and one unused.
+constexpr const char* kBroken = R"({"mesh": {
+    "vertices": [[0,0,0],[10,0,1],[10,10,2],[0,10,3],[0,0,0],[5,5,5]],
+    "triangles": [[0,1,2],[0,2,1],[0,0,2],[4,2,3]]}})";
+
 class TerrainRoutes : public Handlers {
   protected:
-    Response send_csv(const std::string& text) {
-        return ask("PUT", "/v1/sessions/spots", {{"content-type", "text/csv; charset=utf-8"}},
-                   text);
+    Response send(const std::string& query, const std::string& type, const std::string& body) {
+        return ask("POST", "/v1/sessions" + query, {{"content-type", type}}, body);
     }
+    static json body_of(const Response& response) { return json::parse(response.body); }
 };
 
-TEST_F(TerrainRoutes, TakePointsAndNameThoseAtFault) {
-    const Response made =
-        post("/v1/sessions", R"({"points": [[0,0,0],[10,0,1],[10,10,2],[0,10,3],[4,5,6]]})");
-    ASSERT_EQ(made.status, 201) << made.body;
-    const auto session = json::parse(made.body);
-    EXPECT_EQ(session["vertices"], 5);
-    EXPECT_EQ(session["triangles"], 4);
-    const std::string path = header(made, "Location");
-    EXPECT_EQ(post(path + "/polygons", kParcel).status, 200);
-    EXPECT_EQ(json::parse(ask("GET", path + "/mesh?version=1").body)["vertices"][4],
-              json::parse("[4.0, 5.0, 6.0]"));
-
-    const Response refused = post(
-        "/v1/sessions", R"({"points": [[0,0,0],[10,0,1],[10,10,2],[10,0,1],[10,0,2],[0,0,9]]})");
-    EXPECT_EQ(refused.status, 422);
-    EXPECT_EQ(told(refused), "ELEVATION_TWICE ELEVATION_TWICE");
-    const auto errors = json::parse(refused.body)["errors"];
-    EXPECT_EQ(errors[0]["pointer"], "/points/4");
-    EXPECT_EQ(errors[0]["coordinate"], json::parse("[10.0, 0.0]"));
-    EXPECT_EQ(errors[1]["pointer"], "/points/5");
-    EXPECT_EQ(told(post("/v1/sessions", R"({"points": []})")), "TOO_FEW_POINTS");
+TEST_F(TerrainRoutes, ReadMeshFilesByTheirType) {
+    const auto obj = send("", "model/obj", kObj);
+    ASSERT_EQ(obj.status, 201) << obj.body;
+    EXPECT_EQ(body_of(obj)["triangles"], 2);
+    EXPECT_EQ(body_of(obj)["bounds"], json({0.0, 0.0, 0.0, 10.0, 10.0, 3.0}));
+    for (const char* type : {"application/xml", "text/xml", "application/landxml+xml"}) {
+        const auto xml = ask("PUT", "/v1/sessions/x", {{"content-type", type}}, kLandXml);
+        ASSERT_EQ(xml.status, 201) << xml.body;
+        EXPECT_EQ(body_of(xml)["crs"], "EPSG:32616");
+        EXPECT_EQ(body_of(xml)["name"], "Square");
+        EXPECT_EQ(body_of(xml)["bounds"], json({0.0, 0.0, 0.0, 10.0, 10.0, 3.0}));
+        ask("DELETE", "/v1/sessions/x");
+    }
+    const auto glb =
+        ask("GET", "/v1/sessions/" + body_of(obj)["id"].get<std::string>() + "/mesh.glb");
+    const auto again = send("", "model/gltf-binary", glb.body);
+    ASSERT_EQ(again.status, 201) << again.body;
+    EXPECT_EQ(body_of(again)["vertices"], 4);
+    EXPECT_EQ(body_of(again)["unit"], "metre");
 }
 
-TEST_F(TerrainRoutes, TakeCsv) {
-    std::ifstream file(TINSMITH_SOURCE_DIR "/tests/data/spot_heights.csv");
-    const Response made = send_csv({std::istreambuf_iterator<char>(file), {}});
-    ASSERT_EQ(made.status, 201) << made.body;
-    EXPECT_EQ(json::parse(made.body)["vertices"], 12);
-    EXPECT_EQ(json::parse(made.body)["unit"], "metre");
-    EXPECT_EQ(ask("DELETE", "/v1/sessions/spots").status, 200);
-    const Response refused = send_csv("x;y;z\n0;0;0\n1;zero;1\n0;1\n");
+TEST_F(TerrainRoutes, KnowFormatsByTheirFirstBytes) {
+    EXPECT_EQ(terrain_format_of(kObj), TerrainFormat::Obj);
+    EXPECT_EQ(terrain_format_of("mtllib x.mtl\n"), TerrainFormat::Obj);
+    EXPECT_EQ(terrain_format_of(kLandXml), TerrainFormat::LandXml);
+    EXPECT_EQ(terrain_format_of("\xEF\xBB\xBF\n<LandXML>"), TerrainFormat::LandXml);
+    EXPECT_EQ(terrain_format_of("glTF\2"), TerrainFormat::Glb);
+    EXPECT_EQ(terrain_format_of(R"({"asset": {"version": "2.0"}})"), TerrainFormat::Glb);
+    EXPECT_EQ(terrain_format_of("\n{ \"bufferViews\": []}"), TerrainFormat::Glb);
+    EXPECT_EQ(terrain_format_of(R"({"name": "asset"})"), TerrainFormat::Json);
+    EXPECT_EQ(terrain_format_of("{"), TerrainFormat::Json);
+    EXPECT_EQ(terrain_format_of(kSquare), TerrainFormat::Json);
+    EXPECT_EQ(terrain_format_of(""), TerrainFormat::Json);
+    EXPECT_EQ(terrain_format_of("vertices"), TerrainFormat::Json);
+}
+
+TEST_F(TerrainRoutes, NameEachFaultWithoutRepair) {
+    const auto refused = send("", "application/json", kBroken);
     EXPECT_EQ(refused.status, 422);
-    EXPECT_EQ(told(refused), "NUMBER_INVALID WRONG_LENGTH");
-    EXPECT_EQ(json::parse(refused.body)["errors"][0]["detail"],
-              "Line 3, column 3: \"zero\" is no number; write it like -12.5 or 1.2e3.");
-    EXPECT_EQ(ask("GET", "/v1/sessions/spots").status, 404);
-    std::string many = "0,0,0\n";
-    for (int i = 0; i < 1000; ++i)
-        many += std::to_string(i) + ",1,2\n";
-    EXPECT_EQ(told(send_csv(many)), "TOO_MANY_VERTICES") << "max_vertices is 1000 here";
+    EXPECT_EQ(told(refused), "TRIANGLE_CLOCKWISE TRIANGLE_FLAT");
+    const auto obj = send("", "model/obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 3 2\n");
+    EXPECT_EQ(told(obj), "TRIANGLE_CLOCKWISE");
+    EXPECT_NE(obj.body.find("(line 5)"), std::string::npos) << obj.body;
+}
+
+TEST_F(TerrainRoutes, RepairAndTellEachRepair) {
+    const auto made = send("?repair=true", "application/json", kBroken);
+    ASSERT_EQ(made.status, 201) << made.body;
+    const json repairs = json::parse(R"([
+        {"code": "VERTICES_WELDED", "count": 1, "indices": [4]},
+        {"code": "TRIANGLES_FLAT", "count": 1, "indices": [2]},
+        {"code": "TRIANGLES_TURNED", "count": 1, "indices": [1]},
+        {"code": "TRIANGLES_REPEATED", "count": 1, "indices": [1]},
+        {"code": "VERTICES_UNUSED", "count": 1, "indices": [5]}])");
+    EXPECT_EQ(body_of(made)["repairs"], repairs);
+    const std::string session = "/v1/sessions/" + body_of(made)["id"].get<std::string>();
+    EXPECT_EQ(body_of(ask("GET", session))["repairs"], repairs);
+    EXPECT_EQ(body_of(ask("POST", session + "/fork"))["repairs"], repairs);
+    const auto sound = send("?repair=true", "application/json", kSquare);
+    EXPECT_EQ(body_of(sound)["repairs"], json::array());
+}
+
+TEST_F(TerrainRoutes, TellWhatRepairCannotMendByTheNumbersGiven) {
+    // The last triangle lies over the second; two before it are left out.
+    const auto refused = send("?repair=true", "application/json", R"({"mesh": {
+        "vertices": [[9,9,9],[0,0,0],[10,0,1],[10,10,2],[0,10,3],[8,5,5]],
+        "triangles": [[1,1,2],[1,2,3],[1,2,3],[1,3,4],[1,3,5]]}})");
+    EXPECT_EQ(refused.status, 422);
+    EXPECT_EQ(body_of(refused)["errors"][0]["pointer"], "/mesh/triangles/4");
+    EXPECT_EQ(body_of(refused)["errors"][0]["code"], "EDGE_NOT_MANIFOLD");
+}
+
+TEST_F(TerrainRoutes, RefuseAMeshThatLiesOverItself) {
+    const auto refused = send("?repair=true", "model/obj",
+                              std::string(kObj) + "v 2 1 9\nv 3 1 9\nv 3 2 9\nf 5 6 7\n");
+    EXPECT_EQ(refused.status, 422);
+    EXPECT_EQ(told(refused), "MESH_OVERLAPS");
+}
+
+TEST_F(TerrainRoutes, TakeSystemAndUnitWhereTheBytesSayNone) {
+    const auto made = send("?crs=epsg:2264&unit=ftUS", "model/obj", kObj);
+    ASSERT_EQ(made.status, 201) << made.body;
+    EXPECT_EQ(body_of(made)["crs"], "EPSG:2264");
+    EXPECT_EQ(body_of(made)["unit"], "US survey foot");
+    const auto other = send("?crs=EPSG:32617", "application/xml", kLandXml);
+    EXPECT_EQ(told(other), "CRS_CONTRADICTION");
+    EXPECT_NE(other.body.find("EPSG:32617, but the bytes say EPSG:32616"), std::string::npos);
+    EXPECT_EQ(told(send("?unit=foot", "application/xml", kLandXml)), "UNIT_CONTRADICTION");
+    EXPECT_EQ(send("?crs=EPSG:32616&unit=m", "application/xml", kLandXml).status, 201);
+    EXPECT_EQ(told(send("?crs=EPSG:4326", "model/obj", kObj)), "CRS_GEOGRAPHIC");
+}
+
+TEST_F(TerrainRoutes, RefuseOptionsByName) {
+    EXPECT_EQ(told(send("?repair=yes", "model/obj", kObj)), "INVALID_OPTION");
+    EXPECT_EQ(told(send("?weld=1", "model/obj", kObj)), "OPTION_INCOMPLETE");
+    EXPECT_EQ(told(send("?repair=true&weld=-1", "model/obj", kObj)), "INVALID_OPTION");
+    EXPECT_EQ(told(send("?project=auto", "model/obj", kObj)), "PROJECT_OF_MESH");
+    EXPECT_EQ(send("?mend=true", "model/obj", kObj).status, 400);
+}
+
+TEST_F(TerrainRoutes, TakeTheSameOptionsInOneRequest) {
+    const std::string head = "--b\r\nContent-Disposition: form-data; name=";
+    const auto form = [&](const std::string& options) {
+        return ask("POST", "/v1/integrate", {{"content-type", "multipart/form-data; boundary=b"}},
+                   head + "\"terrain\"\r\n\r\n" + kBroken + "\r\n" + head + "\"polygons\"\r\n\r\n" +
+                       kParcel + "\r\n" + head + "\"options\"\r\n\r\n" + options + "\r\n--b--\r\n");
+    };
+    const auto done = form(R"({"repair": true, "terrain_crs": "EPSG:32616", "crs": "EPSG:32616"})");
+    ASSERT_EQ(done.status, 200) << done.body;
+    EXPECT_EQ(body_of(done)["repairs"].size(), 5U);
+    EXPECT_EQ(told(form(R"({"repair": true, "terrain_crs": "EPSG:32616", "crs": "EPSG:32617"})")),
+              "CRS_MISMATCH");
+    EXPECT_EQ(told(form(R"({"weld": 2})")).substr(0, 17), "OPTION_INCOMPLETE");
 }
 
 }  // namespace

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/formats/landxml_reader.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace tinsmith::api {
+namespace {
+
+constexpr const char* kPoints =
+    "<P id='a'>100 1 5</P>\n<P id='b'>100 2 6</P>\n<P id='c'>101 2 7</P>\n<P id='d'>101 1 8</P>\n";
+
+std::string surface(const std::string& points, const std::string& faces,
+                    const std::string& name = "S") {
+    return "<Surface name='" + name + "'><Definition surfType='TIN'><Pnts>\n" + points +
+           "</Pnts><Faces>\n" + faces + "</Faces></Definition></Surface>";
+}
+
+std::string file(const std::string& surfaces, const std::string& head = "") {
+    return "<?xml version='1.0'?>\n<LandXML version='1.2'>" + head + "<Surfaces>" + surfaces +
+           "</Surfaces></LandXML>";
+}
+
+std::string codes(const std::string& text, const ReadLimits& limits = {}) {
+    const auto read = read_landxml(text, limits);
+    if (read) return "";
+    std::string out;
+    for (const Fault& fault : read.faults())
+        out += (out.empty() ? "" : " ") + fault.code;
+    return out;
+}
+
+TEST(LandXml, ReadsNorthingEastingElevationAndTurnsFacesUp) {
+    const auto read =
+        read_landxml(file(surface(kPoints, "<F>a b c</F><F n='0 1 2'> d c\na </F>"),
+                          "<Units><Imperial linearUnit='USSurveyFoot'/></Units><CoordinateSystem "
+                          "epsgCode='2264'/>"),
+                     {});
+    ASSERT_TRUE(read) << read.faults().front().detail;
+    EXPECT_EQ(read->mesh.vertices,
+              (std::vector<core::Point3>{{1, 100, 5}, {2, 100, 6}, {2, 101, 7}, {1, 101, 8}}));
+    EXPECT_EQ(read->mesh.triangles,
+              (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {3, 0, 2}}));
+    EXPECT_EQ(read->unit, "US survey foot");
+    EXPECT_TRUE(read->unit_is_said);
+    EXPECT_EQ(read->crs, "EPSG:2264");
+    EXPECT_EQ(read->vertex_place(3), "point \"d\"");
+}
+
+TEST(LandXml, LeavesInvisibleFacesAndTheirPointsOut) {
+    const auto read = read_landxml(file(surface(kPoints, "<F i='1'>a b c</F><F>a c d</F>")), {});
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->mesh.vertices.size(), 3U);
+    EXPECT_EQ(read->mesh.triangles.size(), 1U);
+    EXPECT_EQ(read->triangle_place(0), "face 2");
+    EXPECT_EQ(read->vertex_place(1), "point \"c\"");
+    ASSERT_EQ(read->notes.size(), 1U);
+    EXPECT_NE(read->notes[0].find("1 points"), std::string::npos);
+}
+
+TEST(LandXml, KnowsPrefixesAndPassesSourceDataOverWithANote) {
+    std::string text = file(
+        "<l:Surface name='x'><l:SourceData><l:Breaklines><l:Breakline/>"
+        "</l:Breaklines></l:SourceData><l:Definition><l:Pnts>"
+        "<l:P id='1'>0 0 0</l:P><l:P id='2'>0 1 0</l:P><l:P id='3'>1 0 0</l:P>"
+        "</l:Pnts><l:Faces><l:F>1 2 3</l:F></l:Faces></l:Definition></l:Surface>");
+    const auto read = read_landxml(text, {});
+    ASSERT_TRUE(read) << read.faults().front().detail;
+    EXPECT_EQ(read->notes,
+              std::vector<std::string>{"\"Breaklines\" of the source data, 1, were passed over."});
+}
+
+TEST(LandXml, WantsOneSurface) {
+    const std::string one = surface(kPoints, "<F>a b c</F>", "ground");
+    EXPECT_EQ(codes(file("")), "SURFACE_MISSING");
+    const auto two = read_landxml(file(one + surface(kPoints, "<F>a b c</F>", "rock")), {});
+    ASSERT_FALSE(two);
+    EXPECT_EQ(two.faults()[0].code, "SURFACES");
+    EXPECT_NE(two.faults()[0].detail.find("\"ground\", \"rock\""), std::string::npos);
+    const auto grid = read_landxml(
+        file(one + "<Surface><Definition surfType='grid'><Faces/></Definition></Surface>"), {});
+    ASSERT_TRUE(grid);
+    EXPECT_EQ(grid->notes.size(), 2U);  // one for the point that no face names
+}
+
+TEST(LandXml, NamesEachFaultByIdOrNumberAndLine) {
+    EXPECT_EQ(
+        codes(file(surface("<P id='1'>0 0</P><P id='1'>0 0 x</P><P>0 0 0</P><P id='2'>1 1 1</P>"
+                           "<P id='2'>1 1 1</P><P id='3'>1 1 1 1</P><P id='4'>nan 1 1</P>",
+                           ""))),
+        "LANDXML_POINT LANDXML_POINT LANDXML_ID LANDXML_ID LANDXML_POINT "
+        "COORDINATE_OUT_OF_RANGE");
+    EXPECT_EQ(codes(file(surface(kPoints, "<F>a b</F><F>a b z</F><F>a b c d</F>"))),
+              "LANDXML_FACE LANDXML_FACE LANDXML_FACE");
+    const auto read = read_landxml(file(surface(kPoints, "<F>a b c</F>\n<F>a b z</F>")), {});
+    EXPECT_EQ(read.faults()[0].detail, "Face 2 (line 9) names point \"z\", which is not there.");
+    EXPECT_EQ(codes(file("", "<Units><Metric linearUnit='parsec'/></Units>")),
+              "UNIT_UNKNOWN SURFACE_MISSING");
+}
+
+TEST(LandXml, RefusesWhatIsNoLandXmlOrDefinesEntities) {
+    EXPECT_EQ(codes(""), "XML_SYNTAX");
+    EXPECT_EQ(codes("<LandXML><Surfaces>"), "XML_SYNTAX");
+    EXPECT_EQ(codes("<gml/>"), "LANDXML_MISSING");
+    EXPECT_EQ(codes("<!DOCTYPE x [<!ENTITY a 'b'><!ENTITY c '&a;&a;'>]>\n<LandXML/>"),
+              "XML_DOCTYPE");
+}
+
+TEST(LandXml, StopsAtItsLimits) {
+    const std::string text = file(surface(kPoints, "<F>a b c</F><F>a c d</F>"));
+    ReadLimits limits;
+    limits.max_vertices = 3;
+    EXPECT_EQ(codes(text, limits), "TOO_MANY_VERTICES");
+    limits = {};
+    limits.max_triangles = 1;
+    EXPECT_EQ(codes(text, limits), "TOO_MANY_TRIANGLES");
+    std::string many = "<LandXML>";
+    for (int i = 0; i < 1'100'000; ++i)
+        many += "<a/><a/>";
+    limits.max_vertices = 1;
+    EXPECT_EQ(codes(many + "</LandXML>", limits), "XML_TOO_LARGE");
+    EXPECT_EQ(codes(many), "XML_SYNTAX");  // well below the usual limits
+}
+
+}  // namespace
+}  // namespace tinsmith::api
