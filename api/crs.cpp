@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 namespace tinsmith::api {
@@ -75,7 +76,7 @@ std::optional<std::string> normalise_unit(std::string_view name) {
     std::string text = upper(name);
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 17> spellings{{
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 18> spellings{{
         {"METRE", kMetre},
         {"METRES", kMetre},
         {"METER", kMetre},
@@ -91,6 +92,7 @@ std::optional<std::string> normalise_unit(std::string_view name) {
         {"FOOT US SURVEY", kSurveyFoot},
         {"FTUS", kSurveyFoot},
         {"US FT", kSurveyFoot},
+        {"FOOT (INTERNATIONAL)", kFoot},
         {"FT US", kSurveyFoot},
         {"SURVEY FOOT", kSurveyFoot},
     }};
@@ -104,6 +106,13 @@ double metres_per(std::string_view unit) {
     if (unit == kFoot) return 0.3048;
     if (unit == kSurveyFoot) return 1200.0 / 3937.0;
     return 1.0;
+}
+
+std::optional<std::string> unit_of_length(double metres) {
+    for (const std::string_view unit : {kMetre, kFoot, kSurveyFoot}) {
+        if (std::fabs(metres - metres_per(unit)) <= 1e-9) return std::string(unit);
+    }
+    return std::nullopt;
 }
 
 }  // namespace tinsmith::api

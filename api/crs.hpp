@@ -23,4 +23,8 @@ std::optional<std::string> normalise_unit(std::string_view name);
 /// Length of a normalised unit in metres. Requires: `unit` came from normalise_unit.
 double metres_per(std::string_view unit);
 
+/// The normalised unit of that length, known by it and not by one of its many names; the two feet
+/// differ by 2e-6. nullopt: none of them.
+std::optional<std::string> unit_of_length(double metres);
+
 }  // namespace tinsmith::api

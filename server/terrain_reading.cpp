@@ -5,8 +5,10 @@
 #include <span>
 #include <utility>
 
+#include "api/formats/ascii_grid.hpp"
 #include "api/formats/geotiff.hpp"
 #include "api/formats/terrain_json.hpp"
+#include "api/terrain_system.hpp"
 #include "core/mesh/build.hpp"
 #include "server/work.hpp"
 
@@ -39,6 +41,7 @@ struct Reader {
 };
 
 constexpr std::string_view kJsonTypes[] = {"application/json"};
+constexpr std::string_view kAsciiGridTypes[] = {"text/plain"};
 constexpr std::string_view kTiffTypes[] = {"image/tiff", "image/geotiff"};
 
 constexpr Reader kReaders[] = {
@@ -47,8 +50,12 @@ constexpr Reader kReaders[] = {
          return api::read_terrain_json(bytes, limits);
      }},
     {TerrainFormat::GeoTiff, kTiffTypes,
-     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
-         return api::read_geotiff(bytes, limits);
+     [](std::string_view bytes, const api::TerrainOptions& options, const api::ReadLimits& limits) {
+         return api::read_geotiff(bytes, limits, options);
+     }},
+    {TerrainFormat::AsciiGrid, kAsciiGridTypes,
+     [](std::string_view bytes, const api::TerrainOptions& options, const api::ReadLimits& limits) {
+         return api::read_ascii_grid(bytes, options, limits);
      }},
 };
 
@@ -63,7 +70,9 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     using namespace std::string_view_literals;
     const bool is_tiff = bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv) ||
                          bytes.starts_with("II+\0"sv) || bytes.starts_with("MM\0+"sv);
-    return is_tiff ? TerrainFormat::GeoTiff : TerrainFormat::Json;
+    if (is_tiff) return TerrainFormat::GeoTiff;
+    if (api::begins_as_ascii_grid(bytes)) return TerrainFormat::AsciiGrid;
+    return TerrainFormat::Json;
 }
 
 std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
@@ -78,6 +87,7 @@ api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat fo
                                         const api::ReadLimits& limits) {
     begin_stage(0.4);
     auto terrain = reader_of(format).read(bytes, options, limits);
+    if (terrain) terrain = api::in_its_system(*std::move(terrain), options, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
     auto tin = core::build_tin(terrain->mesh);

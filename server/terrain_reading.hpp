@@ -13,9 +13,10 @@
 
 namespace tinsmith::server {
 
-enum class TerrainFormat { Json, GeoTiff };
+enum class TerrainFormat { Json, GeoTiff, AsciiGrid };
 
-/// By the first bytes: a TIFF says so, anything else is read as JSON.
+/// By the first bytes: a TIFF says so and a grid as text begins with a word of its header; anything
+/// else is read as JSON.
 TerrainFormat terrain_format_of(std::string_view bytes);
 
 /// By a media type, lower-case; nothing where that is no terrain's.

@@ -16,6 +16,7 @@ namespace tinsmith::api {
 ///      | "grid": {"origin": [x,y], "cell": [dx,dy], "columns": n, "rows": m,
 ///                 "elevations": [z | null, ...]}}
 ///
+/// What system and unit are worth is for in_its_system to say (terrain_system.hpp).
 /// Members may come in any order; unknown and repeated ones are refused by name. Names every
 /// fault, not only the first. Whether a mesh's indices exist and its triangles fit together is
 /// `core::build_tin`'s to say. Memory: the buffers of the result, no document tree.
