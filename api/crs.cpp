@@ -64,11 +64,13 @@ std::optional<std::string> normalise_crs(std::string_view name) {
     return joined(rest.substr(0, first), rest.substr(last + 1));
 }
 
-bool is_common_geographic(std::string_view crs) {
-    constexpr std::array<std::string_view, 10> degrees{
-        "EPSG:4326", "EPSG:4979", "EPSG:4258", "EPSG:4269",  "EPSG:4267",
-        "EPSG:4937", "EPSG:9707", "OGC:CRS84", "OGC:CRS84H", "OGC:CRS83"};
-    return std::find(degrees.begin(), degrees.end(), crs) != degrees.end();
+bool same_crs(std::string_view a, std::string_view b) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 3> twins{
+        {{"OGC:CRS84", "EPSG:4326"}, {"OGC:CRS83", "EPSG:4269"}, {"OGC:CRS27", "EPSG:4267"}}};
+    for (const auto& [one, other] : twins) {
+        if ((a == one && b == other) || (a == other && b == one)) return true;
+    }
+    return a == b;
 }
 
 std::optional<std::string> normalise_unit(std::string_view name) {

@@ -12,9 +12,9 @@ namespace tinsmith::api {
 /// nullopt: not such a name. Whether the code exists is not looked up.
 std::optional<std::string> normalise_crs(std::string_view name);
 
-/// Whether a normalised name is one of the common systems in degrees, such as "EPSG:4326". An
-/// answer of no promises nothing: there are hundreds of others.
-bool is_common_geographic(std::string_view crs);
+/// Whether two normalised names are one system as coordinates are taken here, always longitude
+/// first: "OGC:CRS84" and "EPSG:4326" differ in that order alone.
+bool same_crs(std::string_view a, std::string_view b);
 
 /// The unit's one spelling, "metre", "foot" or "US survey foot", from that and its common others
 /// ("m", "meter", "ft", "ftUS"). nullopt: unknown.

@@ -23,7 +23,7 @@ struct Terrain {
     std::string name;            ///< empty: none given
     std::string crs;             ///< "EPSG:32616"; empty: unknown
     std::string unit = "metre";  ///< unit of all three coordinates
-    bool unit_named = false;     ///< the bytes name it
+    bool unit_is_said = false;   ///< by the bytes; otherwise it is only assumed
     bool settled = false;        ///< system and unit stand, with all that the options say
 };
 

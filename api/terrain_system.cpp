@@ -79,7 +79,7 @@ std::optional<Refused> Settler::take_options() {
         return refused(FaultKind::Invalid, "CRS_UNKNOWN",
                        "This is no name of a reference system. Write it like EPSG:32616.", "crs");
     }
-    if (!said_.crs.empty() && said_.crs != *crs) {
+    if (!said_.crs.empty() && !same_crs(said_.crs, *crs)) {
         return refused(FaultKind::Invalid, "CONTRADICTION",
                        "The terrain says that it is in " + said_.crs + ", the option crs says " +
                            *crs + ": leave the option out, or give the same.",
@@ -242,7 +242,7 @@ Parsed<Terrain> moved(Terrain terrain, const SystemSettled& settled, const ReadL
 
 }  // namespace
 
-Parsed<SystemSettled> settle_system(
+Parsed<SystemSettled> reconcile_system(
     SystemSaid said, const TerrainOptions& options,
     const std::function<std::variant<std::string, NoPlace>()>& zone) {
     return Settler(std::move(said), options, zone).settle();
@@ -256,7 +256,7 @@ Parsed<Terrain> in_its_system(Terrain terrain, const TerrainOptions& options,
     said.crs = said.source = terrain.crs;
     TerrainOptions wanted = options;
     // A unit that the bytes name is as good as one that an option names, and is refused as theirs.
-    const bool names_unit = terrain.unit_named || terrain.unit != "metre";
+    const bool names_unit = terrain.unit_is_said || terrain.unit != "metre";
     if (names_unit && wanted.unit.empty()) {
         wanted.unit = terrain.unit;
     } else if (names_unit && normalise_unit(wanted.unit) != terrain.unit) {
@@ -268,7 +268,7 @@ Parsed<Terrain> in_its_system(Terrain terrain, const TerrainOptions& options,
         return {FaultKind::Invalid, std::move(fault)};
     }
     const bool unit_is_theirs = names_unit && options.unit.empty();
-    auto settled = settle_system(std::move(said), wanted, [&] {
+    auto settled = reconcile_system(std::move(said), wanted, [&] {
         const std::string& from = terrain.crs.empty() ? options.crs : terrain.crs;
         return utm_zone_at(normalise_crs(from).value_or(from), centre_of(terrain.mesh));
     });

@@ -44,7 +44,7 @@ struct SystemSettled {
 ///
 /// `zone` tells what "auto" means for this terrain. Faults that concern an option have its name as
 /// `parameter`, the others neither that nor a pointer.
-Parsed<SystemSettled> settle_system(
+Parsed<SystemSettled> reconcile_system(
     SystemSaid said, const TerrainOptions& options,
     const std::function<std::variant<std::string, NoPlace>()>& zone);
 

@@ -57,7 +57,7 @@ api::Parsed<api::CrsClaim> claim_of(const api::PolygonRequest& request,
     if (option == options.end()) return claim;
     const std::string wanted = api::normalise_crs(option->value).value_or(option->value);
     if (claim.crs.empty()) return api::CrsClaim{wanted, option->pointer};
-    if (claim.crs == wanted) return claim;
+    if (api::same_crs(claim.crs, wanted)) return claim;
     return {api::FaultKind::Invalid,
             api::Fault{"CONTRADICTION",
                        "The body's crs is " + claim.crs + ", the option crs is " + wanted +

@@ -59,6 +59,17 @@ constexpr Reader kReaders[] = {
      }},
 };
 
+/// Only JSON has members that faults can point to.
+api::Parsed<api::Terrain> settled(api::Terrain terrain, TerrainFormat format,
+                                  const api::TerrainOptions& options,
+                                  const api::ReadLimits& limits) {
+    auto out = api::in_its_system(std::move(terrain), options, limits);
+    if (out || format == TerrainFormat::Json) return out;
+    for (api::Fault& fault : out.faults())
+        fault.pointer.clear();
+    return out;
+}
+
 const Reader& reader_of(TerrainFormat format) {
     return *std::ranges::find(kReaders, format, &Reader::format);
 }
@@ -87,7 +98,7 @@ api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat fo
                                         const api::ReadLimits& limits) {
     begin_stage(0.4);
     auto terrain = reader_of(format).read(bytes, options, limits);
-    if (terrain) terrain = api::in_its_system(*std::move(terrain), options, limits);
+    if (terrain) terrain = settled(*std::move(terrain), format, options, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
     auto tin = core::build_tin(terrain->mesh);

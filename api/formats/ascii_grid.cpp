@@ -217,7 +217,7 @@ void GridText::check_size() {
 
 void GridText::settle() {
     const auto named = normalise_crs(options_.crs);
-    auto settled = settle_system({}, options_, [&]() -> std::variant<std::string, NoPlace> {
+    auto settled = reconcile_system({}, options_, [&]() -> std::variant<std::string, NoPlace> {
         return utm_zone_of(grid_, named.value_or(""));
     });
     if (settled) {

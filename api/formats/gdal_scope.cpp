@@ -25,6 +25,9 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kOptions{{
     {"GDAL_GEOREF_SOURCES", "INTERNAL"},
 }};
 
+/// One may live within another of the same thread: the outermost takes the options back.
+thread_local int depth = 0;
+
 void CPL_STDCALL take(CPLErr level, CPLErrorNum, const char* message) {
     auto* const scope = static_cast<GdalScope*>(CPLGetErrorHandlerUserData());
     if (level >= CE_Failure && message != nullptr) scope->note(message);
@@ -40,14 +43,16 @@ GdalScope::GdalScope() {
         OSRSetPROJEnableNetwork(0);
     });
     CPLPushErrorHandlerEx(&take, this);
+    if (depth++ > 0) return;
     for (const auto& [name, value] : kOptions)
         CPLSetThreadLocalConfigOption(name, value);
 }
 
 GdalScope::~GdalScope() {
+    CPLPopErrorHandler();
+    if (--depth > 0) return;
     for (const auto& [name, value] : kOptions)
         CPLSetThreadLocalConfigOption(name, nullptr);
-    CPLPopErrorHandler();
 }
 
 void GdalScope::note(const char* message) {

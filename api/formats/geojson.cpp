@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/crs.hpp"
 #include "api/formats/geojson_coordinates.hpp"
 #include "api/formats/geojson_crs.hpp"
 #include "api/formats/geojson_shape.hpp"
@@ -271,7 +272,7 @@ class Body : public Object {
     /// One system from either member. In JSON-FG "place" has the geometry of that system, and
     /// "geometry" another in degrees: which of the two is meant is not for us to say.
     void settle_crs(Reader& reader) {
-        if (!legacy_crs_.empty() && !json_fg_crs_.empty() && legacy_crs_ != json_fg_crs_) {
+        if (!legacy_crs_.empty() && !json_fg_crs_.empty() && !same_crs(legacy_crs_, json_fg_crs_)) {
             reader.add(FaultKind::Invalid,
                        {"CONTRADICTION",
                         "The body's crs is " + legacy_crs_ + ", its coordRefSys " + json_fg_crs_ +

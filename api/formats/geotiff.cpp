@@ -170,7 +170,7 @@ std::optional<Refused> Raster::read_crs() {
         if (auto no = read_system(srs, said)) return no;
     }
     if (auto no = read_elevation_unit(srs, said)) return no;
-    auto settled = settle_system(said, options_, [&]() -> std::variant<std::string, NoPlace> {
+    auto settled = reconcile_system(said, options_, [&]() -> std::variant<std::string, NoPlace> {
         const std::string from = said.source.empty() ? options_.crs : said.source;
         return utm_zone_of(grid_, from);
     });

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "api/crs.hpp"
 #include "api/formats/json_reader.hpp"
 #include "api/projection.hpp"
 
@@ -16,7 +17,7 @@ using Wanted = std::optional<Transformation>;
 
 /// How to get from the claim to the terrain, nothing where there is nothing to do; or why not.
 std::variant<Wanted, Fault> transformation(const std::string& terrain_crs, const CrsClaim& claim) {
-    if (claim.crs.empty() || claim.crs == terrain_crs) return Wanted();
+    if (claim.crs.empty() || same_crs(claim.crs, terrain_crs)) return Wanted();
     const auto refuse = [&](std::string code, std::string detail) {
         Fault fault{std::move(code), std::move(detail), claim.pointer};
         if (claim.pointer.empty()) fault.parameter = "crs";

@@ -279,7 +279,7 @@ class Body : public Object {
             reader.fault("TERRAIN_REPEATED",
                          "Give one terrain only: one of \"mesh\" and \"grid\".");
         }
-        terrain_.unit_named = has("unit");
+        terrain_.unit_is_said = has("unit");
     }
 
   private:

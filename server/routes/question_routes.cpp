@@ -115,8 +115,9 @@ Response get_elevation(Services& services, const Request& request, const PathArg
     }
     std::array<core::Point2, 1> place{{{x, y}}};
     if (auto misplaced = bring_into(session, {options->crs, {}}, place); !misplaced.empty()) {
-        misplaced.front().pointer.clear();  // in the query
-        return refuse_faults(request, api::FaultKind::Invalid, std::move(misplaced));
+        misplaced.front().pointer.clear();  // it stands in the query
+        misplaced.front().parameter = "crs";
+        return refuse_faults(request, api::FaultKind::Parameter, std::move(misplaced));
     }
     const SpotAnswer found_spot = spot_in(session, place[0]);
     if (!found_spot.spot) {

@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::string_view kCursorKind = "session";
 constexpr std::string_view kTerrainTypes =
-    "application/json (mesh or grid), image/tiff (GeoTIFF elevations)";
+    "application/json (mesh or grid), image/tiff (GeoTIFF elevations), text/plain (ESRI ASCII "
+    "grid)";
 
 /// The format by Content-Type, or 415 saying what curl should have been told.
 Step<TerrainFormat> require_terrain_format(const Request& request) {

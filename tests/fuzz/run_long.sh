@@ -12,7 +12,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 minutes=${1:-10}
 (($# == 0)) || shift
 targets=("$@")
-((${#targets[@]})) || targets=(integrate terrain_json geojson geotiff delta questions edits)
+((${#targets[@]})) || targets=(integrate terrain_json geojson geotiff ascii_grid delta questions edits)
 [[ $minutes =~ ^[0-9]+$ ]] || { sed -n 3s/..//p "$0" >&2; exit 2; }
 
 folder=build/fuzz
