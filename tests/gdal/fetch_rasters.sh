@@ -10,7 +10,11 @@ mkdir -p "$to"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-apt-get -qq download r-cran-terra r-cran-stars
+packages=(r-cran-terra r-cran-stars)
+apt-get -qq download "${packages[@]}" || {
+    apt-get -qq update
+    apt-get -qq download "${packages[@]}"
+}
 for package in *.deb; do
     dpkg-deb --extract "$package" .
 done

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <cpl_string.h>
 #include <gdal.h>
 #include <gtest/gtest.h>
 
@@ -126,9 +126,7 @@ TEST(Rasters, WithOverviewsAndSouthUp) {
     const Workshop shop;
     shop.run("gdal_translate " + kTerrain + " in.tif && gdaladdo in.tif 2 4 8");
     expect_same(read_tiff(shop.read("in.tif")).mesh, posts_by_gdal(shop.path("in.tif")), 0.0, 200);
-    shop.run("gdal_translate -co TFW=NO " + kTerrain +
-             " up.tif && "
-             "gdal_edit.py -a_ullr 731728 4004667 762853 4037452 up.tif || true");
+    shop.run("gdal_translate " + kTerrain + " up.tif");
     GDALAllRegister();
     GDALDatasetH raster = GDALOpen(shop.path("up.tif").c_str(), GA_Update);
     ASSERT_NE(raster, nullptr);

@@ -31,6 +31,13 @@ class CrsRoutes : public Handlers {
         EXPECT_LT(response.status, 300) << response.body;
         return json::parse(response.body);
     }
+    static std::string places(const Response& response) {
+        std::string list;
+        const json body = json::parse(response.body);
+        for (const json& error : body["errors"])
+            list += (list.empty() ? "" : " ") + error.value("pointer", "-");
+        return list;
+    }
     /// The first corner of the session's first polygon.
     void expect_in_place() {
         const json ring =
