@@ -112,8 +112,8 @@ TEST_F(CrsRoutes, ProfilesComeInDegreesToo) {
          {good(post(session + "/profile?crs=EPSG:4326", line_in_degrees())),
           good(post(session + "/profile", line_in_degrees(R"(, "coordRefSys": "[EPSG:4326]")")))}) {
         const json& points = profile["stretches"][0]["points"];
-        EXPECT_NEAR(points.front()["x"], 758200, 0.001) << profile;
-        EXPECT_NEAR(points.back()["y"], 4026500, 0.001);
+        EXPECT_NEAR(points.front()["position"][0], 758200, 0.001) << profile;
+        EXPECT_NEAR(points.back()["position"][1], 4026500, 0.001);
     }
     EXPECT_EQ(told(post(session + "/profile?crs=EPSG:32616",
                         line_in_degrees(R"(, "coordRefSys": "[EPSG:4326]")"))),
@@ -156,8 +156,9 @@ TEST_F(CrsRoutes, AGridAsTextIsATerrain) {
             "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3\n4 5 6\n");
     EXPECT_EQ(made.status, 201) << made.body;
     EXPECT_EQ(good(made)["vertices"], 6);
-    const Response bad = ask("POST", "/v1/sessions", {{"content-type", "text/plain"}},
-                             "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 x 3\n");
+    const Response bad =
+        ask("POST", "/v1/sessions", {{"content-type", "text/plain"}},
+            "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 x 3\n4 5 6\n");
     EXPECT_EQ(bad.status, 400);
     EXPECT_NE(bad.body.find("line 6, column 3"), std::string::npos) << bad.body;
 }
