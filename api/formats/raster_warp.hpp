@@ -17,7 +17,8 @@ std::variant<std::string, NoPlace> utm_zone_of(const Grid& grid, const std::stri
 
 /// The grid in another system, as `gdalwarp -r bilinear` makes it but without its shortcuts: cells
 /// as large as gdalwarp chooses them, elevations between four posts, and no data outside of
-/// the old cells, which reach half a cell beyond the outer posts. Elevations keep their unit. Cost: linear; twice the memory of the larger grid.
+/// the old cells, which reach half a cell beyond the outer posts. Elevations keep their unit. Cost:
+/// linear; twice the memory of the larger grid.
 Parsed<Grid> warp_grid(const Grid& grid, const std::string& from, const std::string& to,
                        const ReadLimits& limits);
 
