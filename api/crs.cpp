@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 namespace tinsmith::api {
@@ -63,11 +64,13 @@ std::optional<std::string> normalise_crs(std::string_view name) {
     return joined(rest.substr(0, first), rest.substr(last + 1));
 }
 
-bool is_common_geographic(std::string_view crs) {
-    constexpr std::array<std::string_view, 10> degrees{
-        "EPSG:4326", "EPSG:4979", "EPSG:4258", "EPSG:4269",  "EPSG:4267",
-        "EPSG:4937", "EPSG:9707", "OGC:CRS84", "OGC:CRS84H", "OGC:CRS83"};
-    return std::find(degrees.begin(), degrees.end(), crs) != degrees.end();
+bool same_crs(std::string_view a, std::string_view b) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 3> twins{
+        {{"OGC:CRS84", "EPSG:4326"}, {"OGC:CRS83", "EPSG:4269"}, {"OGC:CRS27", "EPSG:4267"}}};
+    for (const auto& [one, other] : twins) {
+        if ((a == one && b == other) || (a == other && b == one)) return true;
+    }
+    return a == b;
 }
 
 std::optional<std::string> normalise_unit(std::string_view name) {
@@ -75,7 +78,7 @@ std::optional<std::string> normalise_unit(std::string_view name) {
     std::string text = upper(name);
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 17> spellings{{
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 18> spellings{{
         {"METRE", kMetre},
         {"METRES", kMetre},
         {"METER", kMetre},
@@ -91,6 +94,7 @@ std::optional<std::string> normalise_unit(std::string_view name) {
         {"FOOT US SURVEY", kSurveyFoot},
         {"FTUS", kSurveyFoot},
         {"US FT", kSurveyFoot},
+        {"FOOT (INTERNATIONAL)", kFoot},
         {"FT US", kSurveyFoot},
         {"SURVEY FOOT", kSurveyFoot},
     }};
@@ -104,6 +108,13 @@ double metres_per(std::string_view unit) {
     if (unit == kFoot) return 0.3048;
     if (unit == kSurveyFoot) return 1200.0 / 3937.0;
     return 1.0;
+}
+
+std::optional<std::string> unit_of_length(double metres) {
+    for (const std::string_view unit : {kMetre, kFoot, kSurveyFoot}) {
+        if (std::fabs(metres - metres_per(unit)) <= 1e-9) return std::string(unit);
+    }
+    return std::nullopt;
 }
 
 }  // namespace tinsmith::api

@@ -12,9 +12,9 @@ namespace tinsmith::api {
 /// nullopt: not such a name. Whether the code exists is not looked up.
 std::optional<std::string> normalise_crs(std::string_view name);
 
-/// Whether a normalised name is one of the common systems in degrees, such as "EPSG:4326". An
-/// answer of no promises nothing: there are hundreds of others.
-bool is_common_geographic(std::string_view crs);
+/// Whether two normalised names are one system as coordinates are taken here, always longitude
+/// first: "OGC:CRS84" and "EPSG:4326" differ in that order alone.
+bool same_crs(std::string_view a, std::string_view b);
 
 /// The unit's one spelling, "metre", "foot" or "US survey foot", from that and its common others
 /// ("m", "meter", "ft", "ftUS"). nullopt: unknown.
@@ -22,5 +22,9 @@ std::optional<std::string> normalise_unit(std::string_view name);
 
 /// Length of a normalised unit in metres. Requires: `unit` came from normalise_unit.
 double metres_per(std::string_view unit);
+
+/// The normalised unit of that length, known by it and not by one of its many names; the two feet
+/// differ by 2e-6. nullopt: none of them.
+std::optional<std::string> unit_of_length(double metres);
 
 }  // namespace tinsmith::api

@@ -25,10 +25,11 @@ struct TerrainOptions {
 /// A terrain as any reader delivers it: mesh buffers and what is known of their coordinates.
 struct Terrain {
     core::MeshData mesh;
-    std::string name;                ///< empty: none given
-    std::string crs;                 ///< "EPSG:32616"; empty: unknown
-    std::string unit = "metre";      ///< unit of all three coordinates
-    bool unit_is_said = false;       ///< by the bytes; otherwise it is only assumed
+    std::string name;            ///< empty: none given
+    std::string crs;             ///< "EPSG:32616"; empty: unknown
+    std::string unit = "metre";  ///< unit of all three coordinates
+    bool unit_is_said = false;   ///< by the bytes; otherwise it is only assumed
+    bool settled = false;        ///< system and unit stand, with all that the options say
     std::vector<std::string> notes;  ///< what was passed over, a sentence each, for people
     /// Where a vertex or a triangle stands in the bytes, for people: "line 12". Empty: its index
     /// says it as well.

@@ -58,14 +58,6 @@ void read_option(const NamedOption& option, TerrainOptions& out, OptionFaults& f
     }
 }
 
-Fault contradiction(std::string code, std::string_view what, const std::string& wanted,
-                    const std::string& said) {
-    return {std::move(code),
-            "The " + std::string(what) + " is to be " + wanted + ", but the bytes say " + said +
-                ": leave the option out, or mend the file.",
-            {}};
-}
-
 }  // namespace
 
 std::span<const std::string_view> terrain_option_names() {
@@ -100,21 +92,6 @@ Parsed<TerrainOptions> parse_terrain_options(std::span<const NamedOption> option
         return {kind, faults.take()};
     }
     return out;
-}
-
-std::optional<Fault> settle_system(Terrain& terrain, const TerrainOptions& options) {
-    if (!options.crs.empty() && !terrain.crs.empty() && options.crs != terrain.crs &&
-        options.project.empty())
-        return contradiction("CRS_CONTRADICTION", "terrain's system", options.crs, terrain.crs);
-    if (!options.unit.empty() && terrain.unit_is_said && options.unit != terrain.unit)
-        return contradiction("UNIT_CONTRADICTION", "terrain's unit", options.unit, terrain.unit);
-    if (terrain.crs.empty()) terrain.crs = options.crs;
-    if (!options.unit.empty()) terrain.unit = options.unit;
-    if (is_common_geographic(terrain.crs))
-        return Fault{"CRS_GEOGRAPHIC",
-                     terrain.crs + " is in degrees; project the terrain to metres first.",
-                     {}};
-    return std::nullopt;
 }
 
 }  // namespace tinsmith::api

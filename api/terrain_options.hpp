@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -24,9 +23,5 @@ std::string_view terrain_option_values(std::string_view name);
 /// Reads how a terrain's bytes are to be taken. `crs` and `terrain_crs` mean the same; what stands
 /// beside decides which of them may be given.
 Parsed<TerrainOptions> parse_terrain_options(std::span<const NamedOption> options);
-
-/// Gives the terrain the system and the unit that the options name. Faults: the bytes say others,
-/// or the system is in degrees and nothing is to be done about it.
-std::optional<Fault> settle_system(Terrain& terrain, const TerrainOptions& options);
 
 }  // namespace tinsmith::api

@@ -38,11 +38,6 @@ PolygonEdit edit_of(std::vector<api::RequestedShape>& shapes, const api::Polygon
     return edit;
 }
 
-/// The body's own claim and the option's must be one.
-bool is_contradiction(const std::string& claimed, const std::string& option) {
-    return !claimed.empty() && !option.empty() && claimed != option;
-}
-
 /// As near as the place is known. A body that is a geometry has no pointer of its own.
 std::string pointer_of(const core::ErrorPlace& place,
                        const std::vector<api::RequestedShape>& shapes) {
@@ -55,12 +50,28 @@ std::string pointer_of(const core::ErrorPlace& place,
 
 }  // namespace
 
+api::Parsed<api::CrsClaim> claim_of(const api::PolygonRequest& request,
+                                    std::span<const api::NamedOption> options) {
+    api::CrsClaim claim{request.crs, request.crs_pointer};
+    const auto option = std::ranges::find(options, "crs", &api::NamedOption::name);
+    if (option == options.end()) return claim;
+    const std::string wanted = api::normalise_crs(option->value).value_or(option->value);
+    if (claim.crs.empty()) return api::CrsClaim{wanted, option->pointer};
+    if (api::same_crs(claim.crs, wanted)) return claim;
+    return {api::FaultKind::Invalid,
+            api::Fault{"CONTRADICTION",
+                       "The body's crs is " + claim.crs + ", the option crs is " + wanted +
+                           ": give one, or the same twice.",
+                       claim.pointer}};
+}
+
 api::Parsed<PolygonWork> read_polygon_work(std::string_view body,
                                            std::vector<api::NamedOption> given,
                                            const api::ReadLimits& limits) {
     auto request = api::read_geojson(body, limits);
     if (!request) return {request.kind(), std::move(request.faults())};
-    auto options = api::parse_polygon_options(all_options(std::move(given), *request));
+    const auto named = all_options(std::move(given), *request);
+    auto options = api::parse_polygon_options(named);
     if (!options) return {options.kind(), std::move(options.faults())};
 
     if (options->own_elevations) {
@@ -70,31 +81,18 @@ api::Parsed<PolygonWork> read_polygon_work(std::string_view body,
         api::drop_elevations(request->shapes);
     }
 
-    // The reader may hand the name on as it was written; two spellings are one system.
-    const std::string claimed = api::normalise_crs(request->crs).value_or(request->crs);
-    if (is_contradiction(claimed, options->crs)) {
-        return {api::FaultKind::Invalid,
-                api::Fault{"CONTRADICTION",
-                           "The body's crs is " + claimed + ", the option crs is " + options->crs +
-                               ": give one, or the same twice.",
-                           "/crs"}};
-    }
+    auto claim = claim_of(*request, named);
+    if (!claim) return {claim.kind(), std::move(claim.faults())};
     PolygonWork work;
     work.edit = edit_of(request->shapes, *options);
     work.shapes = std::move(request->shapes);
-    work.crs = options->crs.empty() ? claimed : options->crs;
-    if (options->crs.empty() && !claimed.empty()) work.crs_pointer = "/crs";
+    work.claim = *std::move(claim);
+    work.claim.heights = options->own_elevations;
     return work;
 }
 
-std::optional<api::Fault> crs_fault(const PolygonWork& work, const std::string& session_crs) {
-    if (work.crs.empty() || work.crs == session_crs) return std::nullopt;
-    return api::Fault{"CRS_MISMATCH",
-                      "The polygons are in " + work.crs + ", the terrain is in " +
-                          (session_crs.empty() ? std::string("no named system") : session_crs) +
-                          ". Transform them first, or leave crs out if their numbers are the "
-                          "terrain's.",
-                      work.crs_pointer};
+api::Faults bring_into(PolygonWork& work, const std::string& session_crs) {
+    return api::bring_into(session_crs, work.claim, work.edit.shapes, work.shapes, api::kMaxFaults);
 }
 
 api::Faults faults_of(const core::Errors& errors, const std::vector<api::RequestedShape>& shapes) {

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "api/fault.hpp"
 #include "api/formats/geojson.hpp"
+#include "api/formats/shape_crs.hpp"
 #include "api/requests.hpp"
 #include "core/types/result.hpp"
 #include "server/limits.hpp"
@@ -21,9 +22,13 @@ namespace tinsmith::server {
 struct PolygonWork {
     PolygonEdit edit;
     std::vector<api::RequestedShape> shapes;  ///< the way back to the body; their paths are gone
-    std::string crs;                          ///< that the polygons claim; empty: none
-    std::string crs_pointer;                  ///< where they claim it; empty: in the query
+    api::CrsClaim claim;                      ///< what system its positions are in
 };
+
+/// The system that a request says its positions are in, by an option or in its GeoJSON; where both
+/// speak they must say the same. Requires: the options have been read without fault.
+api::Parsed<api::CrsClaim> claim_of(const api::PolygonRequest& request,
+                                    std::span<const api::NamedOption> options);
 
 /// Reads body and options, the same for requests and the command line. `given` are the options
 /// from outside of the body.
@@ -31,9 +36,9 @@ api::Parsed<PolygonWork> read_polygon_work(std::string_view body,
                                            std::vector<api::NamedOption> given,
                                            const api::ReadLimits& limits);
 
-/// What is wrong with the polygons' own system for a session in `session_crs`; nothing: it is the
-/// same, or they claim none.
-std::optional<api::Fault> crs_fault(const PolygonWork& work, const std::string& session_crs);
+/// Brings the polygons into the session's system, so that the edit is one of its coordinates from
+/// here on: in the history, in replays and in what is told of it. Or says why that cannot be.
+api::Faults bring_into(PolygonWork& work, const std::string& session_crs);
 
 /// What the core refused, in the places of the body. One fault for each error.
 api::Faults faults_of(const core::Errors& errors, const std::vector<api::RequestedShape>& shapes);

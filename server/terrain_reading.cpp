@@ -5,13 +5,14 @@
 #include <span>
 #include <utility>
 
+#include "api/formats/ascii_grid.hpp"
 #include "api/formats/csv.hpp"
 #include "api/formats/geotiff.hpp"
 #include "api/formats/glb_reader.hpp"
 #include "api/formats/landxml_reader.hpp"
 #include "api/formats/obj_reader.hpp"
 #include "api/formats/terrain_json.hpp"
-#include "api/terrain_options.hpp"
+#include "api/terrain_system.hpp"
 #include "core/mesh/build.hpp"
 #include "core/mesh/repair.hpp"
 #include "server/work.hpp"
@@ -50,6 +51,7 @@ struct Reader {
 };
 
 constexpr std::string_view kJsonTypes[] = {"application/json"};
+constexpr std::string_view kAsciiGridTypes[] = {"text/plain"};
 constexpr std::string_view kTiffTypes[] = {"image/tiff", "image/geotiff"};
 constexpr std::string_view kCsvTypes[] = {"text/csv"};
 constexpr std::string_view kGlbTypes[] = {"model/gltf-binary", "model/gltf+json"};
@@ -63,8 +65,12 @@ constexpr Reader kReaders[] = {
          return api::read_terrain_json(bytes, limits);
      }},
     {TerrainFormat::GeoTiff, kTiffTypes,
-     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
-         return api::read_geotiff(bytes, limits);
+     [](std::string_view bytes, const api::TerrainOptions& options, const api::ReadLimits& limits) {
+         return api::read_geotiff(bytes, limits, options);
+     }},
+    {TerrainFormat::AsciiGrid, kAsciiGridTypes,
+     [](std::string_view bytes, const api::TerrainOptions& options, const api::ReadLimits& limits) {
+         return api::read_ascii_grid(bytes, options, limits);
      }},
     {TerrainFormat::Csv, kCsvTypes, api::read_csv},
     {TerrainFormat::Glb, kGlbTypes,
@@ -80,6 +86,18 @@ constexpr Reader kReaders[] = {
          return api::read_landxml(bytes, limits);
      }},
 };
+
+/// Only JSON has members that faults can point to.
+api::Parsed<api::Terrain> settled(api::Terrain terrain, TerrainFormat format,
+                                  const api::TerrainOptions& options,
+                                  const api::ReadLimits& limits) {
+    if (format == TerrainFormat::Glb) api::bring_from_metres(terrain, options);
+    auto out = api::in_its_system(std::move(terrain), options, limits);
+    if (out || format == TerrainFormat::Json) return out;
+    for (api::Fault& fault : out.faults())
+        fault.pointer.clear();
+    return out;
+}
 
 const Reader& reader_of(TerrainFormat format) {
     return *std::ranges::find(kReaders, format, &Reader::format);
@@ -126,14 +144,9 @@ bool is_xml(std::string_view bytes) {
     return first_word(bytes).starts_with('<');
 }
 
-/// Systems and units are settled, and what the options ask for is mended; then the mesh is built.
+/// What the options ask for is mended; then the mesh is built.
 api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
                                  const api::TerrainOptions& options) {
-    if (auto fault = api::settle_system(terrain, options)) {
-        const bool is_degrees = fault->code == "CRS_GEOGRAPHIC";
-        return {is_degrees ? api::FaultKind::Unsupported : api::FaultKind::Invalid,
-                *std::move(fault)};
-    }
     core::Repaired repaired;
     if (options.repair) {
         repaired = core::repair_mesh(terrain.mesh, options.weld);
@@ -156,12 +169,6 @@ api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
     return LoadedTerrain{std::move(terrain), std::move(*tin)};
 }
 
-/// Only rasters are warped.
-bool is_mesh_file(TerrainFormat format) {
-    return format == TerrainFormat::Glb || format == TerrainFormat::Obj ||
-           format == TerrainFormat::LandXml;
-}
-
 }  // namespace
 
 TerrainFormat terrain_format_of(std::string_view bytes) {
@@ -172,6 +179,7 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     if (is_tiff) return TerrainFormat::GeoTiff;
     if (bytes.starts_with("glTF") || is_gltf(bytes)) return TerrainFormat::Glb;
     if (is_xml(bytes)) return TerrainFormat::LandXml;
+    if (api::begins_as_ascii_grid(bytes)) return TerrainFormat::AsciiGrid;
     if (api::looks_like_csv(bytes)) return TerrainFormat::Csv;
     return is_obj(bytes) ? TerrainFormat::Obj : TerrainFormat::Json;
 }
@@ -186,15 +194,9 @@ std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::TerrainOptions& options,
                                         const api::ReadLimits& limits) {
-    if (is_mesh_file(format) && !options.project.empty()) {
-        return {
-            api::FaultKind::Invalid,
-            api::Fault{"PROJECT_OF_MESH",
-                       "Only rasters and points are projected, not triangles: leave project out.",
-                       {}}};
-    }
     begin_stage(0.4);
     auto terrain = reader_of(format).read(bytes, options, limits);
+    if (terrain) terrain = settled(*std::move(terrain), format, options, limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
     return built(std::move(*terrain), format, options);

@@ -13,9 +13,10 @@
 
 namespace tinsmith::server {
 
-enum class TerrainFormat { Json, GeoTiff, Csv, Glb, Obj, LandXml };
+enum class TerrainFormat { Json, GeoTiff, AsciiGrid, Csv, Glb, Obj, LandXml };
 
-/// By the first bytes: a TIFF, a glTF, XML and an OBJ say so, lines of numbers are CSV, anything
+/// By the first bytes: a TIFF, a glTF, XML and an OBJ say so, a grid as text begins with a word of
+/// its header, lines of numbers are CSV, anything
 /// else is read as JSON.
 TerrainFormat terrain_format_of(std::string_view bytes);
 

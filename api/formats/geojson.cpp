@@ -6,6 +6,7 @@
 
 #include "api/crs.hpp"
 #include "api/formats/geojson_coordinates.hpp"
+#include "api/formats/geojson_crs.hpp"
 #include "api/formats/geojson_shape.hpp"
 #include "api/formats/json_reader.hpp"
 #include "api/formats/json_reader_text.hpp"
@@ -60,41 +61,6 @@ class Id : public json::Text {
   private:
     std::string text_;
     std::string& out_;
-};
-
-/// The member "crs" of GeoJSON 2008: {"type": "name", "properties": {"name": "EPSG:32616"}}.
-class LegacyCrs : public Object {
-  public:
-    explicit LegacyCrs(std::string& out) : Object(Unknown::PassOver), out_(out) {
-        properties_.expect({{"name", &name_value_, true}});
-        expect({{"type", &type_value_}, {"properties", &properties_, true}});
-    }
-
-    void scalar(Reader& reader, const Scalar& value) override {
-        if (value.kind != Scalar::Kind::Null) Value::scalar(reader, value);  // null: not known
-    }
-
-  protected:
-    void ended(Reader& reader) override {
-        if (!type_.empty() && type_ != "name") {
-            reader.fault("CRS_UNKNOWN", "A crs of type " + quoted(type_) +
-                                            " is not read; name it: {\"type\": \"name\", ...}.");
-        } else if (auto crs = normalise_crs(name_)) {
-            out_ = *std::move(crs);
-        } else if (reader.log().empty() || !name_.empty()) {
-            reader.fault("CRS_UNKNOWN", quoted(name_) +
-                                            " is no name of a reference system; write it like "
-                                            "\"urn:ogc:def:crs:EPSG::32616\".");
-        }
-    }
-
-  private:
-    std::string& out_;
-    std::string type_;
-    std::string name_;
-    json::Text type_value_{type_};
-    json::Text name_value_{name_};
-    Object properties_{Unknown::PassOver};
 };
 
 /// Whether a member "type" was no text, which has been told.
@@ -176,8 +142,10 @@ class FeatureObject : public Object {
         expect({{"type", &type_, true},
                 {"geometry", &geometry_, true},
                 {"properties", &properties_},
-                {"id", &id_}});
+                {"id", &id_},
+                {"place", &place_}});
     }
+    const Presence& place() const { return place_; }
 
   protected:
     std::string_view expected() const override { return "a Feature"; }
@@ -204,6 +172,7 @@ class FeatureObject : public Object {
     Id id_{draft_.id};
     json::ObjectText properties_;
     GeometryObject geometry_;
+    Presence place_;  ///< of any of them
 };
 
 class FeatureList : public Value, public Container {
@@ -220,6 +189,7 @@ class FeatureList : public Value, public Container {
         if (!empty_) return;
         reader.fault("SHAPE_EMPTY", "There is no Feature; there is nothing to integrate.");
     }
+    bool has_place() const { return feature_.place().given(); }
 
   protected:
     std::string_view expected() const override { return "an array of Features"; }
@@ -242,6 +212,8 @@ class Body : public Object {
                 {"coordinates", &coordinates_},
                 {"geometries"},
                 {"crs", &crs_},
+                {"coordRefSys", &coord_ref_sys_},
+                {"place", &place_},
                 {"tinsmith", &options_}});
     }
 
@@ -260,6 +232,7 @@ class Body : public Object {
     std::string_view expected() const override { return "a GeoJSON object"; }
     void begun(Reader&) override { properties_.write_to(feature_.properties); }
     void ended(Reader& reader) override {
+        settle_crs(reader);
         if (type_at_fault(type_text_, reader)) return;
         const std::string_view content = content_of(type_text_);
         refuse_strangers(reader, content);
@@ -296,6 +269,29 @@ class Body : public Object {
                     pointer_to(reader.pointer(), "type")});
     }
 
+    /// One system from either member. In JSON-FG "place" has the geometry of that system, and
+    /// "geometry" another in degrees: which of the two is meant is not for us to say.
+    void settle_crs(Reader& reader) {
+        if (!legacy_crs_.empty() && !json_fg_crs_.empty() && !same_crs(legacy_crs_, json_fg_crs_)) {
+            reader.add(FaultKind::Invalid,
+                       {"CONTRADICTION",
+                        "The body's crs is " + legacy_crs_ + ", its coordRefSys " + json_fg_crs_ +
+                            ": give one, or the same twice.",
+                        pointer_to(reader.pointer(), "coordRefSys")});
+        }
+        if (!json_fg_crs_.empty() && (place_.given() || features_.has_place())) {
+            reader.add(FaultKind::Unsupported,
+                       {"PLACE_UNSUPPORTED",
+                        "The \"place\" of JSON-FG is not read: send it as \"geometry\", which is "
+                        "taken to be in the body's coordRefSys, " +
+                            json_fg_crs_ + ".",
+                        pointer_to(reader.pointer(), "coordRefSys")});
+        }
+        const bool is_legacy = json_fg_crs_.empty();
+        request_.crs = is_legacy ? legacy_crs_ : json_fg_crs_;
+        request_.crs_pointer = pointer_to(reader.pointer(), is_legacy ? "crs" : "coordRefSys");
+    }
+
     /// RFC 7946, 7.1: members that make a type are not foreign members of another. Shapes that
     /// are in the body and not meant by its type would otherwise be lost without a word.
     void refuse_strangers(Reader& reader, std::string_view content) {
@@ -318,7 +314,11 @@ class Body : public Object {
     json::ObjectText properties_;
     GeometryObject geometry_{feature_, coordinates_};
     FeatureList features_{request_.shapes, coordinates_};
-    LegacyCrs crs_{request_.crs};
+    std::string legacy_crs_;
+    std::string json_fg_crs_;
+    LegacyCrs crs_{legacy_crs_};
+    CoordRefSys coord_ref_sys_{json_fg_crs_};
+    Presence place_;
     json::OptionsReader options_{request_.options};
 };
 

@@ -49,14 +49,16 @@ struct PolygonRequest {
     /// Members of the body's "tinsmith" object in order, values as text: "true", "0.25", "drape".
     /// The pointer of one is "/tinsmith/" and its name. Names are not checked here, nor repeated.
     std::vector<std::pair<std::string, std::string>> options;
-    std::string crs;  ///< from a legacy "crs" member, "EPSG:32616"; empty: none
+    /// From a legacy "crs" member or the "coordRefSys" of JSON-FG, "EPSG:32616"; empty: none.
+    std::string crs;
+    std::string crs_pointer;  ///< of that member
 };
 
-/// Reads a GeoJSON geometry, Feature or FeatureCollection (RFC 7946, but in plan coordinates of a
-/// projected system). A ring becomes a closed path without its repeated last position; a position
-/// a path of one point. Numbers of a position beyond the third are passed over, and so are foreign
-/// members. GeometryCollections are refused: their members can be Features.
-/// Names every fault, not only the first.
+/// Reads a GeoJSON geometry, Feature or FeatureCollection (RFC 7946, but in whatever system the
+/// request names; see shape_crs.hpp). A ring becomes a closed path without its repeated last
+/// position; a position a path of one point. Numbers of a position beyond the third are passed
+/// over, and so are foreign members. GeometryCollections are refused: their members can be
+/// Features. Names every fault, not only the first.
 Parsed<PolygonRequest> read_geojson(std::string_view body, const ReadLimits& limits);
 
 }  // namespace tinsmith::api

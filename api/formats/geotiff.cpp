@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that knows GDAL.
+// Rasters by GDAL, of which only the driver for GeoTIFF is let at the bytes.
 #include "api/formats/geotiff.hpp"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <random>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_vsi.h>
 #include <gdal.h>
-#include <gdal_frmts.h>
 #include <ogr_srs_api.h>
 
 #include "api/crs.hpp"
+#include "api/formats/gdal_scope.hpp"
 #include "api/formats/grid_mesh.hpp"
+#include "api/formats/json_reader.hpp"
+#include "api/formats/raster_warp.hpp"
+#include "api/projection.hpp"
+#include "api/terrain_system.hpp"
 
 namespace tinsmith::api {
 
@@ -40,81 +40,6 @@ Refused refused(FaultKind kind, std::string code, std::string detail) {
     return {kind, {std::move(code), std::move(detail), ""}};
 }
 
-/// While it lives, GDAL's messages of this thread come here and not to stderr, and GDAL looks for
-/// no files beside the one it is given.
-class GdalScope {
-  public:
-    GdalScope() {
-        static std::once_flag registered;
-        std::call_once(registered, [] { GDALRegister_GTiff(); });
-        CPLPushErrorHandlerEx(&GdalScope::take, this);
-        for (const auto& [name, value] : kOptions)
-            CPLSetThreadLocalConfigOption(name, value);
-    }
-    GdalScope(const GdalScope&) = delete;
-    GdalScope& operator=(const GdalScope&) = delete;
-    ~GdalScope() {
-        for (const auto& [name, value] : kOptions)
-            CPLSetThreadLocalConfigOption(name, nullptr);
-        CPLPopErrorHandler();
-    }
-
-    /// GDAL's first complaint, in printable ASCII; it may quote the file's bytes.
-    std::string complaint() const { return first_.empty() ? "no reason given" : first_; }
-    bool complained() const { return !first_.empty(); }
-    void forget() { first_.clear(); }
-
-  private:
-    static constexpr std::array<std::pair<const char*, const char*>, 4> kOptions{{
-        {"GTIFF_REPORT_COMPD_CS", "YES"},  // else the vertical unit is not told
-        {"GDAL_DISABLE_READDIR_ON_OPEN", "EMPTY_DIR"},
-        {"GDAL_PAM_ENABLED", "NO"},
-        {"GDAL_GEOREF_SOURCES", "INTERNAL"},
-    }};
-
-    static void CPL_STDCALL take(CPLErr level, CPLErrorNum, const char* message) {
-        auto* const self = static_cast<GdalScope*>(CPLGetErrorHandlerUserData());
-        if (level < CE_Failure || !self->first_.empty() || message == nullptr) return;
-        constexpr std::size_t longest = 200;
-        self->first_ = std::string(message).substr(0, longest);
-        // The random name of the file in memory says nothing to the caller.
-        for (auto at = self->first_.find("/vsimem/"); at != std::string::npos;
-             at = self->first_.find("/vsimem/")) {
-            const auto end = self->first_.find_first_of(",: '\"", at);
-            self->first_.replace(at, end == std::string::npos ? end : end - at, "the file");
-        }
-        for (char& c : self->first_) {
-            if (c < ' ' || c > '~') c = '?';
-        }
-    }
-
-    std::string first_;
-};
-
-/// The caller's bytes under a name nobody can guess, as long as it lives. The bytes are not copied.
-class MemoryFile {
-  public:
-    explicit MemoryFile(std::string_view bytes) {
-        static std::atomic<std::uint64_t> count{0};
-        std::random_device random;
-        name_ = "/vsimem/tinsmith-" + std::to_string(random()) + "-" + std::to_string(random()) +
-                "-" + std::to_string(++count) + ".tif";
-        // GDAL's signature knows no const; opened for reading only, it never writes.
-        auto* const data =
-            const_cast<GByte*>(reinterpret_cast<const GByte*>(bytes.data()));  // NOLINT
-        VSILFILE* const file = VSIFileFromMemBuffer(name_.c_str(), data, bytes.size(), FALSE);
-        if (file != nullptr) VSIFCloseL(file);
-    }
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-    ~MemoryFile() { VSIUnlink(name_.c_str()); }
-
-    const char* name() const { return name_.c_str(); }
-
-  private:
-    std::string name_;
-};
-
 struct CloseDataset {
     void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
 };
@@ -123,8 +48,10 @@ using Dataset = std::unique_ptr<void, CloseDataset>;
 /// Reads one open raster into a grid and a Terrain; each step may refuse.
 class Raster {
   public:
-    Raster(GDALDatasetH dataset, const ReadLimits& limits, GdalScope& messages)
+    Raster(GDALDatasetH dataset, const TerrainOptions& options, const ReadLimits& limits,
+           GdalScope& messages)
         : dataset_(dataset),
+          options_(options),
           limits_(limits),
           messages_(messages),
           width_(static_cast<std::size_t>(GDALGetRasterXSize(dataset))),
@@ -135,6 +62,11 @@ class Raster {
         for (const Step step : {&Raster::check_size, &Raster::check_band, &Raster::read_place,
                                 &Raster::read_crs, &Raster::read_elevations}) {
             if (auto no = (this->*step)()) return {no->kind, std::move(no->fault)};
+        }
+        if (!settled_.warp_from.empty()) {
+            auto warped = warp_grid(grid_, settled_.warp_from, settled_.crs, limits_);
+            if (!warped) return {warped.kind(), std::move(warped.faults())};
+            grid_ = *std::move(warped);
         }
         auto mesh = mesh_of_grid(grid_, limits_);
         if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
@@ -147,7 +79,8 @@ class Raster {
     std::optional<Refused> check_band();
     std::optional<Refused> read_place();
     std::optional<Refused> read_crs();
-    std::optional<Refused> check_units(OGRSpatialReferenceH srs);
+    std::optional<Refused> read_system(OGRSpatialReferenceH srs, SystemSaid& said) const;
+    std::optional<Refused> read_elevation_unit(OGRSpatialReferenceH srs, SystemSaid& said) const;
     std::optional<Refused> read_elevations();
     std::optional<Refused> check_blocks() const;
     CPLErr mask_rows(int row, int rows, double* elevations);
@@ -155,12 +88,14 @@ class Raster {
     bool is_no_data(double value) const;
 
     GDALDatasetH dataset_;
+    const TerrainOptions& options_;
     const ReadLimits& limits_;
     GdalScope& messages_;
     std::size_t width_;
     std::size_t height_;
     GDALRasterBandH band_ = nullptr;
     std::optional<double> no_data_;
+    SystemSettled settled_;
     Grid grid_;
     Terrain terrain_;
 };
@@ -229,46 +164,72 @@ std::optional<Refused> Raster::read_place() {
 }
 
 std::optional<Refused> Raster::read_crs() {
+    SystemSaid said;
     OGRSpatialReferenceH srs = GDALGetSpatialRef(dataset_);
-    if (srs == nullptr) return std::nullopt;  // unknown: metres are assumed, as for other formats
-    if (OSRIsGeographic(srs) != 0 || OSRIsGeocentric(srs) != 0) {
-        return refused(FaultKind::Unsupported, "CRS_GEOGRAPHIC",
-                       "The raster's coordinates are in degrees or geocentric. Project it to "
-                       "metres first, for example with: gdalwarp -t_srs EPSG:32633 in.tif out.tif "
-                       "(with the zone of your place).");
+    if (srs != nullptr) {
+        if (auto no = read_system(srs, said)) return no;
     }
-    // Of a compound system the plan part counts: elevations have no name of their own here.
-    const char* const part = OSRIsProjected(srs) != 0 ? "PROJCS" : nullptr;
-    const char* const authority = OSRGetAuthorityName(srs, part);
-    const char* const code = OSRGetAuthorityCode(srs, part);
-    if (authority != nullptr && code != nullptr) {
-        terrain_.crs = normalise_crs(std::string(authority) + ":" + code).value_or("");
-    }
-    return check_units(srs);
+    if (auto no = read_elevation_unit(srs, said)) return no;
+    auto settled = reconcile_system(said, options_, [&]() -> std::variant<std::string, NoPlace> {
+        const std::string from = said.source.empty() ? options_.crs : said.source;
+        return utm_zone_of(grid_, from);
+    });
+    if (!settled) return Refused{settled.kind(), std::move(settled.faults().front())};
+    settled_ = *std::move(settled);
+    terrain_.crs = settled_.crs;
+    terrain_.unit = settled_.unit;
+    terrain_.settled = true;
+    return std::nullopt;
 }
 
-std::optional<Refused> Raster::check_units(OGRSpatialReferenceH srs) {
+std::optional<Refused> Raster::read_system(OGRSpatialReferenceH srs, SystemSaid& said) const {
+    said.geographic = OSRIsGeographic(srs) != 0;
+    if (!said.geographic && OSRIsProjected(srs) == 0 && OSRIsLocal(srs) == 0) {
+        return refused(FaultKind::Unsupported, "CRS_UNFIT",
+                       "The raster's coordinates are neither projected nor geographic. Project it "
+                       "first, for example with: gdalwarp -t_srs EPSG:32633 in.tif out.tif (with "
+                       "the zone of your place).");
+    }
+    said.named = true;
+    // Of a compound system the plan part counts: elevations have no name of their own here.
+    const char* const part = said.geographic ? "GEOGCS" : "PROJCS";
+    const char* const authority = OSRGetAuthorityName(srs, part);
+    const char* const code = OSRGetAuthorityCode(srs, part);
+    if (authority != nullptr && code != nullptr)
+        said.crs = normalise_crs(std::string(authority) + ":" + code).value_or("");
+    said.source = said.crs;
     char* name = nullptr;
-    const double metres = OSRGetLinearUnits(srs, &name);
-    for (const std::string_view unit : {"metre", "foot", "US survey foot"}) {
-        // By length and not by name, of which there are many; the two feet differ by 2e-6.
-        if (std::fabs(metres - metres_per(unit)) > 1e-9) continue;
-        terrain_.unit = unit;
-        terrain_.unit_is_said = true;
-    }
-    if (!terrain_.unit_is_said) {
+    if (!said.geographic) said.plan_metres = OSRGetLinearUnits(srs, &name);
+    if (!said.source.empty()) return std::nullopt;
+    char* wkt = nullptr;
+    const std::array<const char*, 2> format{"FORMAT=WKT2_2019", nullptr};
+    if (OSRExportToWktEx(srs, &wkt, format.data()) == OGRERR_NONE && wkt != nullptr)
+        said.source = wkt;
+    CPLFree(wkt);
+    return std::nullopt;
+}
+
+/// The band may name the unit of its elevations, and a compound system theirs.
+std::optional<Refused> Raster::read_elevation_unit(OGRSpatialReferenceH srs,
+                                                   SystemSaid& said) const {
+    const std::string name = GDALGetRasterUnitType(band_);
+    if (const auto unit = normalise_unit(name)) said.elevation_metres = metres_per(*unit);
+    if (!name.empty() && !said.elevation_metres) {
         return refused(FaultKind::Unsupported, "UNIT_UNKNOWN",
-                       "The raster's coordinates are in a unit of " + std::to_string(metres) +
-                           " metres. Known are metre, foot and US survey foot.");
+                       "The raster's elevations are in a unit called " + json::quoted(name) +
+                           ". Known are metre, foot and US survey foot. If it is one of them, say "
+                           "so, for example with: gdal_edit.py -units metre in.tif");
     }
-    if (OSRIsCompound(srs) == 0) return std::nullopt;
-    const double vertical = OSRGetTargetLinearUnits(srs, "VERT_CS", &name);
-    if (std::fabs(vertical - metres) > 1e-9) {
-        return refused(FaultKind::Unsupported, "UNIT_VERTICAL",
-                       "The raster's plan coordinates are in " + terrain_.unit +
-                           " and its elevations in a unit of " + std::to_string(vertical) +
-                           " metres. Bring both to one unit first.");
+    if (srs == nullptr || OSRIsCompound(srs) == 0) return std::nullopt;
+    char* vertical_name = nullptr;
+    const double vertical = OSRGetTargetLinearUnits(srs, "VERT_CS", &vertical_name);
+    if (said.elevation_metres && std::fabs(*said.elevation_metres - vertical) > 1e-9) {
+        return refused(FaultKind::Invalid, "CONTRADICTION",
+                       "The raster's band says that elevations are in " + json::quoted(name) +
+                           ", and its system that they are in a unit of " +
+                           std::to_string(vertical) + " metres.");
     }
+    said.elevation_metres = vertical;
     return std::nullopt;
 }
 
@@ -352,6 +313,7 @@ std::optional<Refused> Raster::convert() {
     const double scale = GDALGetRasterScale(band_, nullptr);
     const double offset = GDALGetRasterOffset(band_, nullptr);
     const bool scaled = scale != 1.0 || offset != 0.0;
+    const bool other_unit = settled_.elevation_factor != 1.0;
     std::size_t wild = 0;
     std::size_t first_wild = 0;
     for (std::size_t i = 0; i < grid_.elevations.size(); ++i) {
@@ -361,6 +323,7 @@ std::optional<Refused> Raster::convert() {
             continue;
         }
         if (scaled) elevation = elevation * scale + offset;
+        if (other_unit) elevation *= settled_.elevation_factor;
         if (std::fabs(elevation) <= kMaxCoordinate) continue;
         if (wild++ == 0) first_wild = i;
     }
@@ -378,9 +341,10 @@ std::optional<Refused> Raster::convert() {
 
 }  // namespace
 
-Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits) {
+Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits,
+                             const TerrainOptions& options) {
     GdalScope messages;
-    const MemoryFile file(bytes);
+    const GdalMemoryFile file(bytes);
     constexpr std::array<const char*, 2> drivers{"GTiff", nullptr};
     const Dataset dataset(GDALOpenEx(file.name(),
                                      GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_INTERNAL,
@@ -393,7 +357,7 @@ Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits) {
                                             : "it does not begin as a TIFF does."),
                  ""}};
     }
-    return Raster(dataset.get(), limits, messages).read();
+    return Raster(dataset.get(), options, limits, messages).read();
 }
 
 }  // namespace tinsmith::api

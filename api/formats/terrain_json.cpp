@@ -281,12 +281,7 @@ class Body : public Object {
             reader.fault("TERRAIN_REPEATED",
                          "Give one terrain only: one of \"mesh\", \"points\" and \"grid\".");
         }
-        if (is_common_geographic(terrain_.crs)) {
-            reader.add(FaultKind::Unsupported,
-                       {"CRS_GEOGRAPHIC",
-                        terrain_.crs + " is in degrees; project the terrain to metres first.",
-                        json::pointer_to(reader.pointer(), "crs")});
-        }
+        terrain_.unit_is_said = has("unit");
     }
 
   private:

@@ -133,7 +133,9 @@ Error outside_error(const Tin& tin, std::span<const Shape> shapes) {
     const bool mesh_is_far =
         box.min.x > 180.0 || box.max.x < -180.0 || box.min.y > 90.0 || box.max.y < -90.0;
     if (like_degrees && mesh_is_far)
-        error.detail += "; its coordinates look like degrees of longitude and latitude";
+        error.detail +=
+            "; its coordinates look like degrees of longitude and latitude: if they are, "
+            "name their system with the option crs";
     return error;
 }
 

@@ -70,9 +70,9 @@ std::optional<PolygonWork> read_polygons(const IntegrateConfig& config, const Se
         complain(config.polygons, work.faults());
         return std::nullopt;
     }
-    if (const auto fault = crs_fault(*work, terrain_crs)) {
+    if (const auto faults = bring_into(*work, terrain_crs); !faults.empty()) {
         bar.clear();
-        complain(config.polygons, {*fault});
+        complain(config.polygons, faults);
         return std::nullopt;
     }
     bar.name("integrating");

@@ -44,7 +44,8 @@ export function curlLine(origin, path, method, parameters, body, content) {
   } else if (content?.externalValue) {
     words.push('--data-binary', `@${content.externalValue}`);
   } else if (content) {
-    words.push('-d', `'${JSON.stringify(content.value)}'`);
+    const text = typeof content.value === 'string' ? content.value : JSON.stringify(content.value);
+    words.push('-d', `'${text}'`);
   }
   words.push(`'${origin}${filled}${query && '?' + query}'`);
   return words.join(' ');

@@ -226,9 +226,9 @@ Response integrate_once(Services& services, const Request& request, const PathAr
         if (!read) faults.add(read.kind(), kPolygons, std::move(read.faults()));
     }
     if (terrain && work) {
-        if (auto fault = crs_fault(*work, terrain->about.crs)) {
-            faults.add(api::FaultKind::Invalid, kPolygons, {*std::move(fault)});
-        }
+        auto misplaced = bring_into(*work, terrain->about.crs);
+        if (!misplaced.empty())
+            faults.add(api::FaultKind::Invalid, kPolygons, std::move(misplaced));
     }
     if (!faults.faults.empty()) {
         return refuse(request, api::problem_of_faults(faults.kind, std::move(faults.faults)));

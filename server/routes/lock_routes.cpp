@@ -34,15 +34,18 @@ std::optional<Response> refusal_of_type(const Request& request) {
                              "-H 'Content-Type: application/json'");
 }
 
-/// What the query and the body's `tinsmith` say: options of a polygons request, those of them that
-/// mean something here.
-api::Parsed<api::PolygonOptions> options_of(const Request& request,
-                                            const api::PolygonRequest& lines) {
+/// What the query and the body's `tinsmith` say: options of a polygons request.
+std::vector<api::NamedOption> options_of(const Request& request, const api::PolygonRequest& lines) {
     auto given = options_of_query(request);
+    for (const auto& [name, value] : lines.options)
+        given.push_back({name, value, "/tinsmith/" + name});
+    return given;
+}
+
+/// Reads those of them that mean something here.
+api::Parsed<api::PolygonOptions> read_options(std::span<const api::NamedOption> given) {
     api::Faults faults;
-    for (const auto& [name, value] : lines.options) {
-        const std::string pointer = "/tinsmith/" + name;
-        given.push_back({name, value, pointer});
+    for (const auto& [name, value, pointer] : given) {
         if (std::ranges::find(kLockParameters, name) != kLockParameters.end()) continue;
         faults.push_back({"UNKNOWN_OPTION",
                           name + " is not known here; known are: snap, crs, dry_run.", pointer});
@@ -51,28 +54,29 @@ api::Parsed<api::PolygonOptions> options_of(const Request& request,
     return api::parse_polygon_options(given);
 }
 
+Response refuse_faults(const Request& request, api::FaultKind kind, api::Faults faults) {
+    return refuse(request, api::problem_of_faults(kind, std::move(faults)));
+}
+
 Step<Asked> require_lines(const Services& services, const Request& request, Asked asked) {
     auto lines = api::read_lock_lines(request.body, services.read_limits());
     if (!lines) {
         return refuse(request, api::problem_of_faults(lines.kind(), std::move(lines.faults())));
     }
-    auto options = options_of(request, *lines);
-    if (!options) {
-        return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
-    }
-    for (const std::string& claimed : {lines->crs, options->crs}) {
-        PolygonWork claim;
-        claim.crs = claimed;
-        claim.crs_pointer = &claimed == &options->crs ? "" : "/crs";
-        if (const auto fault = crs_fault(claim, asked.session->facts().crs)) {
-            return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, {*fault}));
-        }
-    }
+    const auto given = options_of(request, *lines);
+    auto options = read_options(given);
+    if (!options) return refuse_faults(request, options.kind(), std::move(options.faults()));
+    auto claim = claim_of(*lines, given);
+    if (!claim) return refuse_faults(request, claim.kind(), std::move(claim.faults()));
     asked.edit.dry_run = options->dry_run;
     asked.edit.operation.reach = options->integrate.snap;
     for (api::RequestedShape& shape : lines->shapes)
         asked.edit.operation.shapes.push_back(std::move(shape.shape));
     asked.shapes = std::move(lines->shapes);
+    auto misplaced = api::bring_into(asked.session->facts().crs, *claim,
+                                     asked.edit.operation.shapes, asked.shapes, api::kMaxFaults);
+    if (!misplaced.empty())
+        return refuse_faults(request, api::FaultKind::Invalid, std::move(misplaced));
     return asked;
 }
 

@@ -72,8 +72,8 @@ Response integrate_polygons(Services& services, const Request& request,
     if (!work) {
         return refuse(request, api::problem_of_faults(work.kind(), std::move(work.faults())));
     }
-    if (const auto fault = crs_fault(*work, session.facts().crs)) {
-        return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, {*fault}));
+    if (auto faults = bring_into(*work, session.facts().crs); !faults.empty()) {
+        return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, std::move(faults)));
     }
 
     const bool as_glb = std::get<0>(type) == 1;

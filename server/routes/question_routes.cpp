@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "api/answers.hpp"
@@ -56,6 +58,19 @@ double read_coordinate(const Request& request, const std::string& name, api::Fau
     return 0.0;
 }
 
+/// The query's crs, which may be missing.
+api::Parsed<api::PolygonOptions> read_crs_option(const Request& request) {
+    const auto crs = request.parameter("crs");
+    std::vector<api::NamedOption> given;
+    if (crs) given.push_back({"crs", std::string(*crs), {}});
+    return api::parse_polygon_options(given);
+}
+
+api::Faults bring_into(const Session& session, const api::CrsClaim& claim,
+                       std::span<core::Point2> points) {
+    return api::bring_into(session.facts().crs, claim, points, "/points", api::kMaxFaults);
+}
+
 /// The other session of a volume request, null where it names none.
 Step<std::shared_ptr<Session>> require_other(Services& services, const Request& request,
                                              const Session& session,
@@ -93,10 +108,18 @@ Response get_elevation(Services& services, const Request& request, const PathArg
     api::Faults faults;
     const double x = read_coordinate(request, "x", faults);
     const double y = read_coordinate(request, "y", faults);
+    auto options = read_crs_option(request);
+    if (!options) std::ranges::move(options.faults(), std::back_inserter(faults));
     if (!faults.empty()) {
         return refuse_faults(request, api::FaultKind::Parameter, std::move(faults));
     }
-    const SpotAnswer found_spot = spot_in(session, {x, y});
+    std::array<core::Point2, 1> place{{{x, y}}};
+    if (auto misplaced = bring_into(session, {options->crs, {}}, place); !misplaced.empty()) {
+        misplaced.front().pointer.clear();  // it stands in the query
+        misplaced.front().parameter = "crs";
+        return refuse_faults(request, api::FaultKind::Parameter, std::move(misplaced));
+    }
+    const SpotAnswer found_spot = spot_in(session, place[0]);
     if (!found_spot.spot) {
         return refuse(request, api::ProblemType::OutsideMesh,
                       "The position is outside the mesh, or in a hole of it. Its bounds are in GET "
@@ -105,7 +128,7 @@ Response get_elevation(Services& services, const Request& request, const PathArg
             .with("ETag", session.etag(found_spot.version));
     }
     return answer(session, found_spot.version,
-                  api::write_elevation(head_of(session, found_spot.version), {x, y},
+                  api::write_elevation(head_of(session, found_spot.version), place[0],
                                        *found_spot.spot, found_spot.polygons));
 }
 
@@ -119,6 +142,10 @@ Response ask_elevations(Services& services, const Request& request,
     limits.max_polygon_vertices = std::min(limits.max_polygon_vertices, services.limits.max_points);
     auto points = api::read_points(request.body, limits);
     if (!points) return refuse_faults(request, points.kind(), std::move(points.faults()));
+    auto options = read_crs_option(request);
+    if (!options) return refuse_faults(request, options.kind(), std::move(options.faults()));
+    if (auto misplaced = bring_into(session, {options->crs, {}}, *points); !misplaced.empty())
+        return refuse_faults(request, api::FaultKind::Invalid, std::move(misplaced));
     const SpotsAnswer spots = spots_in(session, *points);
     return answer(session, spots.version,
                   api::write_elevations(head_of(session, spots.version), spots.spots));
@@ -131,14 +158,18 @@ Response ask_profile(Services& services, const Request& request, const PathArgum
     if (auto refusal = refusal_of_type(request, "a line")) return *refusal;
     auto line = api::read_line(request.body, services.read_limits());
     if (!line) return refuse_faults(request, line.kind(), std::move(line.faults()));
-    PolygonWork claim;
-    claim.crs = line->crs;
-    claim.crs_pointer = "/crs";
-    if (const auto fault = crs_fault(claim, session.facts().crs)) {
-        return refuse_faults(request, api::FaultKind::Invalid, {*fault});
+    auto options = read_crs_option(request);
+    if (!options) return refuse_faults(request, options.kind(), std::move(options.faults()));
+    auto claim = claim_of(*line, options_of_query(request));
+    if (!claim) return refuse_faults(request, claim.kind(), std::move(claim.faults()));
+    std::array<core::Shape, 1> shapes{std::move(line->shapes.front().shape)};
+    if (auto misplaced =
+            api::bring_into(session.facts().crs, *claim, shapes, line->shapes, api::kMaxFaults);
+        !misplaced.empty()) {
+        return refuse_faults(request, api::FaultKind::Invalid, std::move(misplaced));
     }
     const auto outcome =
-        profile_in(session, line->shapes.front().shape.paths.front().points,
+        profile_in(session, shapes[0].paths.front().points,
                    {std::min(services.limits.max_crossings, services.limits.max_profile_crossings),
                     deadline(services.limits, services.stopping)});
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {

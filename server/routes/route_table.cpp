@@ -21,7 +21,8 @@ namespace {
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
 constexpr std::array<std::string_view, 1> kVersion{"version"};
 constexpr std::array<std::string_view, 1> kEdit{"dry_run"};
-constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
+constexpr std::array<std::string_view, 3> kPosition{"x", "y", "crs"};
+constexpr std::array<std::string_view, 1> kCrs{"crs"};
 
 using Function = Response (*)(Services&, const Request&, const PathArguments&);
 
@@ -106,8 +107,8 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
         {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
-        {"POST", "/v1/sessions/{id}/elevation", {}, long_json(ask_elevations)},
-        {"POST", "/v1/sessions/{id}/profile", {}, long_json(ask_profile)},
+        {"POST", "/v1/sessions/{id}/elevation", kCrs, long_json(ask_elevations)},
+        {"POST", "/v1/sessions/{id}/profile", kCrs, long_json(ask_profile)},
         {"POST", "/v1/sessions/{id}/volume", {}, long_json(ask_volume)},
     };
 }

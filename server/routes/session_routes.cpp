@@ -21,8 +21,9 @@ namespace {
 
 constexpr std::string_view kCursorKind = "session";
 constexpr std::string_view kTerrainTypes =
-    "application/json (mesh, points or grid), image/tiff (GeoTIFF elevations), text/csv (x,y,z), "
-    "model/gltf-binary, model/gltf+json, model/obj, application/xml (LandXML)";
+    "application/json (mesh, points or grid), image/tiff (GeoTIFF elevations), text/plain (ESRI "
+    "ASCII grid), text/csv (x,y,z), model/gltf-binary, model/gltf+json, model/obj, application/xml "
+    "(LandXML)";
 
 /// The format by Content-Type, or 415 saying what curl should have been told.
 Step<TerrainFormat> require_terrain_format(const Request& request) {

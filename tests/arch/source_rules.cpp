@@ -34,11 +34,13 @@ struct Home {
     const char* files;    ///< regular expression for the files that may include it
     bool one_file_only;
 };
-const std::array<Home, 14> kHomes = {{
+const std::array<Home, 15> kHomes = {{
     {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http_server\.cpp)", true},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},
-    {"GDAL", R"((gdal/)?(gdal|ogr|cpl)[a-z_]*\.h)", R"(api/formats/geotiff[a-z_]*\.cpp)", false},
+    {"GDAL", R"((gdal/)?(gdal|ogr|cpl)[a-z_]*\.h)",
+     R"(api/formats/(geotiff|gdal|raster)[a-z_]*\.cpp)", false},
+    {"PROJ", R"(proj(_[a-z]+)?\.h)", R"(api/projection\.cpp)", true},
     {"meshoptimizer", R"(meshoptimizer\.h)", R"(api/formats/meshopt[a-z_]*\.cpp)", false},
     {"pugixml", R"(pugixml\.hpp)", R"(api/formats/landxml_[a-z_]*\.cpp)", false},
     {"GEOS", R"(geos(_c|/.*)?\.h)", R"(api/ring_offset\.cpp)", true},

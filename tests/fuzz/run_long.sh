@@ -12,8 +12,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 minutes=${1:-10}
 (($# == 0)) || shift
 targets=("$@")
-((${#targets[@]})) ||
-    targets=(integrate terrain_json obj landxml glb geojson geotiff delta questions edits csv delaunay)
+((${#targets[@]})) || targets=(
+    integrate terrain_json obj landxml glb geojson geotiff ascii_grid delta questions edits csv delaunay)
 [[ $minutes =~ ^[0-9]+$ ]] || { sed -n 3s/..//p "$0" >&2; exit 2; }
 
 folder=build/fuzz

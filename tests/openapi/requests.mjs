@@ -113,7 +113,7 @@ function contentOf({type, example}) {
     return form;
   }
   if (example.externalValue) return readFileSync(join(project, example.externalValue));
-  return JSON.stringify(example.value);
+  return typeof example.value === 'string' ? example.value : JSON.stringify(example.value);
 }
 
 async function answerOf(operation, response) {

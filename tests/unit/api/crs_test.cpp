@@ -16,8 +16,15 @@ TEST(Crs, OneSpelling) {
                             "a:b:c:d", "EPSG:32616+5703", "EPSG:3 2", "urn:ogc:def:crs:a:b:c:d"}) {
         EXPECT_EQ(normalise_crs(bad), std::nullopt) << bad;
     }
-    EXPECT_TRUE(is_common_geographic("EPSG:4326"));
-    EXPECT_FALSE(is_common_geographic("EPSG:32616"));
+}
+
+TEST(Crs, LongitudeFirstMakesTwoNamesOneSystem) {
+    EXPECT_TRUE(same_crs("EPSG:4326", "OGC:CRS84"));
+    EXPECT_TRUE(same_crs("OGC:CRS84", "EPSG:4326"));
+    EXPECT_TRUE(same_crs("EPSG:32616", "EPSG:32616"));
+    EXPECT_FALSE(same_crs("EPSG:4326", "OGC:CRS83"));
+    EXPECT_FALSE(same_crs("EPSG:32616", "EPSG:32617"));
+    EXPECT_FALSE(same_crs("EPSG:4326", ""));
 }
 
 TEST(Crs, Units) {
@@ -25,6 +32,9 @@ TEST(Crs, Units) {
     EXPECT_EQ(normalise_unit("Meter"), "metre");
     EXPECT_EQ(normalise_unit("us_survey_foot"), "US survey foot");
     EXPECT_EQ(normalise_unit("ft"), "foot");
+    EXPECT_EQ(unit_of_length(0.3048), "foot");
+    EXPECT_EQ(unit_of_length(1200.0 / 3937.0), "US survey foot");
+    EXPECT_EQ(unit_of_length(0.3047972654), std::nullopt) << "Clarke's foot";
     EXPECT_EQ(normalise_unit("degree"), std::nullopt);
     EXPECT_EQ(metres_per("metre"), 1.0);
     EXPECT_EQ(metres_per("foot"), 0.3048);

@@ -108,6 +108,76 @@ TEST(GeoTiff, FeetAreNamed) {
     EXPECT_EQ(terrain->crs, "EPSG:2264");
 }
 
+const std::string kFootBand =
+    R"(<GDALMetadata><Item name="UNITTYPE" sample="0" role="unittype">ft</Item></GDALMetadata>)";
+
+TEST(GeoTiff, ElevationsOfAnotherUnitBecomeOnesOfThePlans) {
+    const auto terrain = read_geotiff(three_by_two().vertical(6360).bytes(), {});
+    ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+    EXPECT_EQ(terrain->unit, "metre");
+    EXPECT_NEAR(terrain->mesh.vertices[5].z, 6.25 * 1200 / 3937, 1e-14);
+    const auto band =
+        read_geotiff(three_by_two().projected(32616).set_text(42112, kFootBand).bytes(), {});
+    ASSERT_TRUE(band.ok()) << band.faults()[0].detail;
+    EXPECT_NEAR(band->mesh.vertices[5].z, 6.25 * 0.3048, 1e-15);
+    // A plan without a system is in the unit of the elevations.
+    const auto alone = read_geotiff(three_by_two().set_text(42112, kFootBand).bytes(), {});
+    ASSERT_TRUE(alone.ok()) << alone.faults()[0].detail;
+    EXPECT_EQ(alone->unit, "foot");
+    EXPECT_EQ(alone->mesh.vertices[5].z, 6.25);
+}
+
+TEST(GeoTiff, OptionsNameWhatTheFileDoesNot) {
+    TerrainOptions options;
+    options.crs = "EPSG:2264";
+    const auto named = read_geotiff(three_by_two().bytes(), {}, options);
+    ASSERT_TRUE(named.ok()) << named.faults()[0].detail;
+    EXPECT_EQ(named->crs, "EPSG:2264");
+    EXPECT_EQ(named->unit, "US survey foot");
+    const auto other = read_geotiff(three_by_two().projected(32616).bytes(), {}, options);
+    ASSERT_FALSE(other.ok());
+    EXPECT_EQ(other.faults()[0].code, "CONTRADICTION");
+    EXPECT_EQ(other.faults()[0].parameter, "crs");
+}
+
+TEST(GeoTiff, DegreesAreWarpedWhereProjectSaysSo) {
+    TiffBytes tiff(4, 4, {1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4});
+    tiff.place(-84.1, 36.4, 0.001, 0.001).geographic(4326).set_text(42112, kFootBand);
+    TerrainOptions options;
+    options.project = "auto";
+    const auto zone = read_geotiff(tiff.bytes(), {}, options);
+    ASSERT_TRUE(zone.ok()) << zone.faults()[0].detail;
+    EXPECT_EQ(zone->crs, "EPSG:32616");
+    EXPECT_TRUE(zone->settled);
+    for (const auto& p : zone->mesh.vertices) {
+        EXPECT_GE(p.z, 0.3048 - 1e-9) << "feet have become metres";
+        EXPECT_LE(p.z, 4 * 0.3048 + 1e-9);
+    }
+    options.project = "EPSG:2274";
+    const auto feet = read_geotiff(tiff.bytes(), {}, options);
+    ASSERT_TRUE(feet.ok()) << feet.faults()[0].detail;
+    EXPECT_EQ(feet->unit, "US survey foot");
+    options.project = "EPSG:999999";
+    EXPECT_EQ(read_geotiff(tiff.bytes(), {}, options).faults().at(0).code, "CRS_UNKNOWN");
+    options.project = "auto";
+    const auto polar = read_geotiff(tiff.place(10, 88, 0.001, 0.001).bytes(), {}, options);
+    ASSERT_FALSE(polar.ok());
+    EXPECT_EQ(polar.faults()[0].code, "PROJECT_POLAR");
+    ReadLimits few;
+    few.max_vertices = 16;
+    options.project = "EPSG:3413";  // north is not up there
+    const auto many = read_geotiff(tiff.place(10, 70, 0.001, 0.001).bytes(), few, options);
+    ASSERT_FALSE(many.ok());
+    EXPECT_EQ(many.faults()[0].code, "TOO_MANY_VERTICES");
+}
+
+TEST(GeoTiff, UnitsOfElevationsThatAreNoneAreRefused) {
+    std::string odd = kFootBand;
+    odd.replace(odd.find(">ft<"), 4, ">kelvin<");
+    expect_fault(three_by_two().projected(32616).set_text(42112, odd).bytes(),
+                 FaultKind::Unsupported, "UNIT_UNKNOWN");
+}
+
 TEST(GeoTiff, NoDataIsAHole) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     TiffBytes tiff(3, 2, {1, 2, nan, 4, 5, -9999.9F});
@@ -133,7 +203,6 @@ TEST(GeoTiff, ScaleAndOffsetAreApplied) {
 TEST(GeoTiff, WhatIsNotTakenIsNamed) {
     constexpr auto unsupported = FaultKind::Unsupported;
     expect_fault(three_by_two().geographic(4326).bytes(), unsupported, "CRS_GEOGRAPHIC");
-    expect_fault(three_by_two().vertical(6360).bytes(), unsupported, "UNIT_VERTICAL");
     expect_fault(TiffBytes(2, 2, {1, 2, 3, 4}).bytes(), FaultKind::Invalid,
                  "TIFF_NOT_GEOREFERENCED");
     expect_fault(TiffBytes(2, 2, {1, 2, 3, 4})

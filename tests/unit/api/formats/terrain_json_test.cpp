@@ -164,7 +164,6 @@ TEST(TerrainJson, NamesWhatIsWrongAroundAGoodMesh) {
         R"("mesh": {"vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,2]]})";
     const BadBody cases[] = {
         {R"("crs": "the usual one")", FaultKind::Invalid, "CRS_UNKNOWN", "/crs"},
-        {R"("crs": "EPSG:4326")", FaultKind::Unsupported, "CRS_GEOGRAPHIC", "/crs"},
         {R"("unit": "cubit")", FaultKind::Invalid, "UNIT_UNKNOWN", "/unit"},
         {R"("unit": 1)", FaultKind::Invalid, "WRONG_TYPE", "/unit"},
         {R"("name": null)", FaultKind::Invalid, "WRONG_TYPE", "/name"},

@@ -149,7 +149,7 @@ TEST_F(LockRoutes, NameAllFaults) {
     EXPECT_EQ(told(lock("{")), "JSON_SYNTAX");
     EXPECT_EQ(told(lock(kDiagonal, "?improve=none")), "UNKNOWN_PARAMETER");
     EXPECT_EQ(told(lock(kDiagonal, "?snap=-1&dry_run=2")), "INVALID_OPTION INVALID_OPTION");
-    EXPECT_EQ(told(lock(kDiagonal, "?crs=EPSG:4326")), "CRS_MISMATCH");
+    EXPECT_EQ(told(lock(kDiagonal, "?crs=EPSG:999999")), "CRS_UNKNOWN");
     EXPECT_EQ(told(lock(R"({"type": "LineString", "coordinates": [[0,0],[10,10]],
                            "tinsmith": {"improve": "none", "lock": true}})")),
               "UNKNOWN_OPTION UNKNOWN_OPTION");

@@ -115,8 +115,8 @@ TEST_F(Questions, RefuseWhatIsNoLine) {
         told(post(session + "/profile", R"({"type": "LineString", "coordinates": [[1,5],[1,5]]})")),
         "LINE_TOO_SHORT");
     const Response claimed = post(session + "/profile", R"({"type": "LineString",
-        "coordinates": [[1,5],[8,5]], "crs": {"type": "name", "properties": {"name": "EPSG:2154"}}})");
-    EXPECT_EQ(told(claimed), "CRS_MISMATCH");
+        "coordinates": [[1,5],[8,5]], "crs": {"type": "name", "properties": {"name": "EPSG:999999"}}})");
+    EXPECT_EQ(told(claimed), "CRS_UNKNOWN");
     const Response option = post(session + "/profile", R"({"type": "LineString",
         "coordinates": [[1,5],[8,5]], "tinsmith": {"snap": 1}})");
     EXPECT_EQ(told(option), "UNKNOWN_OPTION");

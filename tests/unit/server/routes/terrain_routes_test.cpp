@@ -112,9 +112,9 @@ TEST_F(TerrainRoutes, TakeSystemAndUnitWhereTheBytesSayNone) {
     EXPECT_EQ(body_of(made)["crs"], "EPSG:2264");
     EXPECT_EQ(body_of(made)["unit"], "US survey foot");
     const auto other = send("?crs=EPSG:32617", "application/xml", kLandXml);
-    EXPECT_EQ(told(other), "CRS_CONTRADICTION");
-    EXPECT_NE(other.body.find("EPSG:32617, but the bytes say EPSG:32616"), std::string::npos);
-    EXPECT_EQ(told(send("?unit=foot", "application/xml", kLandXml)), "UNIT_CONTRADICTION");
+    EXPECT_EQ(told(other), "CONTRADICTION");
+    EXPECT_NE(other.body.find("in EPSG:32616, the option crs says EPSG:32617"), std::string::npos);
+    EXPECT_EQ(told(send("?unit=foot", "application/xml", kLandXml)), "CONTRADICTION");
     EXPECT_EQ(send("?crs=EPSG:32616&unit=m", "application/xml", kLandXml).status, 201);
     EXPECT_EQ(told(send("?crs=EPSG:4326", "model/obj", kObj)), "CRS_GEOGRAPHIC");
 }
@@ -123,7 +123,7 @@ TEST_F(TerrainRoutes, RefuseOptionsByName) {
     EXPECT_EQ(told(send("?repair=yes", "model/obj", kObj)), "INVALID_OPTION");
     EXPECT_EQ(told(send("?weld=1", "model/obj", kObj)), "OPTION_INCOMPLETE");
     EXPECT_EQ(told(send("?repair=true&weld=-1", "model/obj", kObj)), "INVALID_OPTION");
-    EXPECT_EQ(told(send("?project=auto", "model/obj", kObj)), "PROJECT_OF_MESH");
+    EXPECT_EQ(told(send("?project=auto", "model/obj", kObj)), "PROJECT_WITHOUT_CRS");
     EXPECT_EQ(send("?mend=true", "model/obj", kObj).status, 400);
 }
 
