@@ -118,4 +118,28 @@ PlanCheck check_plan(std::span<const GridPoint> points,
     return check;
 }
 
+GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
+                             const PositionGrid& coarsest, std::int32_t span) {
+    const Box<double> bounds = bounds_in_metres(mesh, unit_to_metre);
+    const double half = widest_half(bounds, coarsest.origin);
+    const auto at = [&](const PositionGrid& grid) {
+        GridPositions made{grid, quantize(mesh, unit_to_metre, grid), {}};
+        made.check = check_plan(made.points, mesh.triangles);
+        return made;
+    };
+    const auto faults = [](const GridPositions& made) {
+        return made.check.flipped + made.check.collapsed;
+    };
+    GridPositions best = at(coarsest);
+    PositionGrid finer = coarsest;
+    // Ends: each step doubles the number of steps across the mesh, which `span` bounds, or the
+    // exponent comes to its end.
+    while (faults(best) > 0 && --finer.exponent >= kFinestExponent &&
+           std::ldexp(half, -finer.exponent) < span / 2.0 - 1.0) {
+        GridPositions next = at(finer);
+        if (faults(next) < faults(best)) best = std::move(next);
+    }
+    return best;
+}
+
 }  // namespace tinsmith::api

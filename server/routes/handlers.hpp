@@ -70,7 +70,10 @@ Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?
 // mesh_routes.cpp
 Response get_mesh(Services&, const Request&, const PathArguments&);
 Response get_mesh_glb(Services&, const Request&, const PathArguments&);
+Response get_mesh_gltf(Services&, const Request&, const PathArguments&);
 Response get_mesh_json(Services&, const Request&, const PathArguments&);
+Response get_mesh_obj(Services&, const Request&, const PathArguments&);
+Response get_mesh_landxml(Services&, const Request&, const PathArguments&);
 
 // question_routes.cpp: nothing changes
 Response get_elevation(Services&, const Request&, const PathArguments&);

@@ -18,7 +18,8 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
-constexpr std::array<std::string_view, 1> kVersion{"version"};
+constexpr std::array<std::string_view, 2> kJsonMesh{"version", "bbox"};
+constexpr std::array<std::string_view, 3> kExchangeMesh{"version", "bbox", "constraints"};
 constexpr std::array<std::string_view, 1> kEdit{"dry_run"};
 constexpr std::array<std::string_view, 2> kPosition{"x", "y"};
 
@@ -102,7 +103,10 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/history/{version}", {}, json(get_change)},
         {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
-        {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/mesh.gltf", mesh, to(get_mesh_gltf)},
+        {"GET", "/v1/sessions/{id}/mesh.json", kJsonMesh, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/mesh.obj", kExchangeMesh, to(get_mesh_obj)},
+        {"GET", "/v1/sessions/{id}/mesh.xml", kExchangeMesh, to(get_mesh_landxml)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
         {"POST", "/v1/sessions/{id}/elevation", {}, long_json(ask_elevations)},
         {"POST", "/v1/sessions/{id}/profile", {}, long_json(ask_profile)},
