@@ -185,6 +185,10 @@ PropertyTable property_table(const RegionPartition& regions) {
     return table.take();
 }
 
+std::string region_name(const RegionFeature& feature) {
+    return name_of(feature, own_properties(feature));
+}
+
 std::string regions_extras(const RegionPartition& regions) {
     json list = json::array();
     for (const RegionFeature& feature : regions.features) {

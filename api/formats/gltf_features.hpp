@@ -39,8 +39,11 @@ inline constexpr std::size_t kMostOwnColumns = 200;
 /// Laws: a column holds numbers where each value of that name is a number that a double holds
 /// exactly, else texts, numbers and truths as JSON writes them. Arrays, objects and null count as
 /// no value. What a row has in place of one, `no_text` or `no_number`, is no value of any row.
-/// `name` is the Feature's own "name", else its id, else the polygon's.
+/// For `name` see `region_name`.
 PropertyTable property_table(const RegionPartition& regions);
+
+/// The Feature's own "name", if that is a scalar, else its id, else the polygon's.
+std::string region_name(const RegionFeature& feature);
 
 /// The same as JSON text: [{"id", "name", "plan_area", "surface_area", "properties"}].
 std::string regions_extras(const RegionPartition& regions);

@@ -55,6 +55,9 @@ Response get_locks(Services&, const Request&, const PathArguments&);
 Response list_regions(Services&, const Request&, const PathArguments&);
 Response get_region(Services&, const Request&, const PathArguments&);
 
+// constraint_routes.cpp
+Response list_constraints(Services&, const Request&, const PathArguments&);
+
 // job_routes.cpp
 Response list_jobs(Services&, const Request&, const PathArguments&);
 Response get_job(Services&, const Request&, const PathArguments&);
