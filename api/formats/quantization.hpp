@@ -118,8 +118,8 @@ struct GridPositions {
 /// The mesh on that grid; or on the coarsest of those finer ones on which fewest triangles are
 /// flipped or collapsed. Finer ones count while the box of the points is at most `span` steps wide
 /// on each axis and within half of that of the origin, so that no primitive more comes of it.
-/// Cost: two passes for each grid that is tried; one grid where nothing is flipped or collapsed,
-/// else at most kDracoBits.
+/// Cost: two passes where nothing is flipped or collapsed; else two more for each grid that mends
+/// some of these, at most kDracoBits.
 GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
                              const PositionGrid& coarsest, std::int32_t span);
 

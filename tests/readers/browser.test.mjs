@@ -19,6 +19,7 @@ before(async () => {
   const files = {};
   for (const compression of COMPRESSIONS)
     files[`/${compression}.glb`] = await terrain.bytes(`/mesh.glb?compression=${compression}&regions=true`);
+  files['/terrain.xml'] = await terrain.bytes('/mesh.xml');
   files['/draco.gltf'] = await terrain.bytes('/mesh.gltf?regions=true');
   pages = await servePages(files);
   browser = await puppeteer.launch({
@@ -89,3 +90,15 @@ for (const file of COMPRESSIONS.map((compression) => `/${compression}.glb`)) {
     });
   });
 }
+
+test("the browser's parser of XML reads the LandXML", {timeout: 60_000}, async () => {
+  const {fault, top, epsg, unit, points, faces, breaklines} = await ask('/xml.html', '/terrain.xml');
+  assert.equal(fault, null);
+  assert.deepEqual(top, ['Units', 'CoordinateSystem', 'Project', 'Application', 'Surfaces']);
+  assert.deepEqual({epsg, unit}, {epsg: '32616', unit: 'meter'});
+  assert.deepEqual(points.map(([n, e, z]) => [e, n, z]), terrain.mesh.vertices);
+  assert.deepEqual(faces.map((ids) => ids.map((id) => id - 1)), terrain.mesh.triangles);
+  const {features} = await terrain.json('/constraints');
+  const edges = features.reduce((sum, {geometry}) => sum + geometry.coordinates.length - 1, 0);
+  assert.equal(breaklines.reduce((sum, points) => sum + points - 1, 0), edges);
+});

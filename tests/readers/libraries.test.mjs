@@ -102,8 +102,8 @@ for (const compression of COMPRESSIONS) {
     });
 
     test(`Khronos' validator finds no fault in ${query}`, async () => {
-      for (const [path, validate] of [['glb', 'validateBytes'], ['gltf', 'validateBytes']]) {
-        const report = await validator[validate](await terrain.bytes(`/mesh.${path}?${query}`), {
+      for (const path of ['glb', 'gltf']) {
+        const report = await validator.validateBytes(await terrain.bytes(`/mesh.${path}?${query}`), {
           ignoredIssues: ['UNSUPPORTED_EXTENSION', 'UNUSED_OBJECT'],
         });
         assert.deepEqual(report.issues.messages.filter(({severity}) => severity < 2), []);
@@ -173,12 +173,4 @@ test("three's OBJLoader reads the OBJ", async () => {
     assert.ok(Math.abs(positions.getX(3 * i + k) - terrain.mesh.vertices[slot][0]) <= 0.25);
     assert.ok(Math.abs(positions.getY(3 * i + k) - terrain.mesh.vertices[slot][1]) <= 0.25);
   }));
-});
-
-test('the LandXML is well-formed and holds the same mesh', async () => {
-  const text = new TextDecoder().decode(await terrain.bytes('/mesh.xml'));
-  const points = [...text.matchAll(/<P id="\d+">(\S+) (\S+) (\S+)<\/P>/g)].map(([, n, e, z]) => [e, n, z].map(Number));
-  assert.deepEqual(points, terrain.mesh.vertices);
-  const faces = [...text.matchAll(/<F>(\d+) (\d+) (\d+)<\/F>/g)].map(([, ...ids]) => ids.map((id) => id - 1));
-  assert.deepEqual(faces, terrain.mesh.triangles);
 });
