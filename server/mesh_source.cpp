@@ -51,11 +51,9 @@ std::variant<MeshSource, NoSource> source_of(MeshGround ground, const api::MeshO
                                              const std::string& unit, RegionLimits limits) {
     MeshSource source{std::move(ground.mesh), {}};
     if (ground.regions) {
-        // A mesh that can be sent can be looked through a few times; time bounds the rest.
-        constexpr std::uint64_t kTimes = 16;
-        limits.max_visits =
-            std::max<std::uint64_t>(limits.max_visits, kTimes * source.mesh.triangles.size());
-        auto found = find_partition(*std::move(ground.regions), unit, limits);
+        auto found =
+            find_partition(*std::move(ground.regions), unit,
+                           limits_for_all(std::move(limits), source.mesh.triangles.size()));
         if (!found) return NoSource(found.errors());
         source.regions = std::move(*found);
     }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +24,14 @@ struct PartitionGround {
 
 /// Requires: `all` lie in `tin` as it is.
 PartitionGround partition_ground(const core::Tin& tin, std::span<const Polygon> all);
+
+/// The limits of a question that is about all of a mesh and cannot be asked in parts: what can be
+/// sent can be looked through some times, and time bounds the rest.
+inline RegionLimits limits_for_all(RegionLimits limits, std::size_t triangles) {
+    constexpr std::uint64_t kTimes = 16;
+    limits.max_visits = std::max<std::uint64_t>(limits.max_visits, kTimes * triangles);
+    return limits;
+}
 
 /// The triangles by the polygons that contain them. Errors: the limits. Cost: the regions of all
 /// polygons, one after the other, and a pass over the mesh.

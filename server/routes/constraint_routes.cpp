@@ -53,8 +53,10 @@ Response list_constraints(Services& services, const Request& request,
         [](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t now) {
             return std::pair(constraint_ground(tin, polygons), now);
         });
-    const auto lines = find_constraint_lines(
-        ground, {services.limits.max_crossings, deadline(services.limits, services.stopping)});
+    const RegionLimits limits{services.limits.max_crossings,
+                              deadline(services.limits, services.stopping)};
+    const auto lines =
+        find_constraint_lines(ground, limits_for_all(limits, ground.tin.triangle_count()));
     if (!lines) return refuse_question(request, lines.errors());
     const auto& [limit, after] = std::get<0>(page);
     const std::size_t first = std::min(lines_before(after), lines->size());
