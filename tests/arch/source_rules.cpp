@@ -37,7 +37,7 @@ struct Home {
 const std::array<Home, 12> kHomes = {{
     {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http_server\.cpp)", true},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
-    {"meshoptimizer", R"(meshoptimizer\.h)", R"(api/formats/meshopt_encoder\.cpp)", true},
+    {"meshoptimizer", R"(meshoptimizer\.h)", R"(api/formats/meshopt[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},
     {"GDAL", R"((gdal/)?(gdal|ogr|cpl)[a-z_]*\.h)", R"(api/formats/geotiff[a-z_]*\.cpp)", false},
     {"GEOS", R"(geos(_c|/.*)?\.h)", R"(api/ring_offset\.cpp)", true},
