@@ -8,6 +8,7 @@
 #include "api/crs.hpp"
 #include "api/option_reading.hpp"
 #include "api/terrain_options.hpp"
+#include "core/types/range.hpp"
 
 namespace tinsmith::api {
 
@@ -27,13 +28,13 @@ constexpr std::array kPolygonTable{
 };
 
 constexpr std::array kMeshTable{
-    OptionRow{"compression", "draco or none"},
+    OptionRow{"compression", "draco, meshopt or none"},
     OptionRow{"tolerance", "a length in metres above 0 and up to 1000"},
     OptionRow{"up", "y or z"},
     OptionRow{"constraints", "true or false"},
     OptionRow{"normals", "true or false"},
-    OptionRow{"regions", "false"},
-    OptionRow{"bbox", "no such parameter: the whole mesh"},
+    OptionRow{"regions", "true or false"},
+    OptionRow{"bbox", "minx,miny,maxx,maxy in the session's system, no minimum above its maximum"},
     OptionRow{"version", "no such parameter: the mesh as it is now"},
 };
 
@@ -118,21 +119,33 @@ void check_pairs(std::span<const NamedOption> options, const PolygonOptions& rea
     }
 }
 
-void read_regions(const NamedOption& option, OptionFaults& faults) {
-    bool regions = false;
-    read_bool(option, regions, faults);
-    if (regions) faults.add_unavailable(option);
+/// Four numbers with commas between them.
+std::optional<PlanBox> parse_bbox(std::string_view text) {
+    std::array<double, 4> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const std::size_t comma = text.find(',');
+        if ((comma == std::string_view::npos) != (i + 1 == numbers.size())) return std::nullopt;
+        const auto number = parse_number(text.substr(0, comma));
+        if (!number || std::fabs(*number) > core::kCoordinateLimit) return std::nullopt;
+        numbers[i] = *number;
+        if (comma != std::string_view::npos) text.remove_prefix(comma + 1);
+    }
+    const auto [min_x, min_y, max_x, max_y] = numbers;
+    if (min_x > max_x || min_y > max_y) return std::nullopt;
+    return PlanBox{min_x, min_y, max_x, max_y};
 }
 
-void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults& faults) {
+void read_bbox(const NamedOption& option, MeshOptions& out, OptionFaults& faults) {
+    out.bbox = parse_bbox(option.value);
+    if (!out.bbox) faults.add_invalid(option);
+}
+
+void read_mesh_option(const NamedOption& option, MeshOptions& options, OptionFaults& faults) {
+    GltfOptions& out = options.gltf;
     if (option.name == "compression") {
-        if (is_one_of(option.value, {"draco", "none"})) {
-            out.compression = option.value == "draco" ? Compression::Draco : Compression::None;
-        } else if (option.value == "meshopt") {
-            faults.add_unavailable(option);
-        } else {
-            faults.add_invalid(option);
-        }
+        using enum Compression;
+        read_choice(option, {{"draco", Draco}, {"meshopt", Meshopt}, {"none", None}},
+                    out.compression, faults);
     } else if (option.name == "tolerance") {
         const auto value = parse_number(option.value);
         if (value && *value > 0.0 && *value <= 1000.0) {
@@ -141,18 +154,16 @@ void read_mesh_option(const NamedOption& option, GltfOptions& out, OptionFaults&
             faults.add_invalid(option);
         }
     } else if (option.name == "up") {
-        if (is_one_of(option.value, {"y", "z"})) {
-            out.up = option.value == "z" ? UpAxis::Z : UpAxis::Y;
-        } else {
-            faults.add_invalid(option);
-        }
+        read_choice(option, {{"y", UpAxis::Y}, {"z", UpAxis::Z}}, out.up, faults);
     } else if (option.name == "constraints") {
         read_bool(option, out.constraints, faults);
     } else if (option.name == "normals") {
         read_bool(option, out.normals, faults);
     } else if (option.name == "regions") {
-        read_regions(option, faults);
-    } else if (is_one_of(option.name, {"bbox", "version"})) {
+        read_bool(option, options.regions, faults);
+    } else if (option.name == "bbox") {
+        read_bbox(option, options, faults);
+    } else if (option.name == "version") {
         faults.add_unavailable(option);
     } else {
         faults.add_unknown(option, kMeshNames);
@@ -199,8 +210,8 @@ Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> option
     return out;
 }
 
-Parsed<GltfOptions> parse_mesh_options(std::span<const NamedOption> options) {
-    GltfOptions out;
+Parsed<MeshOptions> parse_mesh_options(std::span<const NamedOption> options) {
+    MeshOptions out;
     OptionFaults faults;
     for (std::size_t i = 0; i < options.size(); ++i) {
         if (is_repeated(options, i, faults)) continue;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "api/fault.hpp"
 #include "api/formats/gltf.hpp"
+#include "api/mesh_part.hpp"
 #include "core/integrate/integrator.hpp"
 #include "core/regions/region.hpp"
 
@@ -49,7 +51,14 @@ std::string_view option_values(std::string_view name);
 /// The query parameters of a mesh request, granted or not.
 std::span<const std::string_view> mesh_option_names();
 
+/// How a mesh is to be written, and what of it.
+struct MeshOptions {
+    GltfOptions gltf;
+    bool regions = false;  ///< a primitive for each set of polygons that contain triangles
+    std::optional<PlanBox> bbox;
+};
+
 /// Reads how a mesh is to be written. The unit is not the request's to say and stays the default.
-Parsed<GltfOptions> parse_mesh_options(std::span<const NamedOption> options);
+Parsed<MeshOptions> parse_mesh_options(std::span<const NamedOption> options);
 
 }  // namespace tinsmith::api

@@ -12,6 +12,7 @@
 #include "core/regions/constraint_history.hpp"
 #include "server/operation.hpp"
 #include "server/polygon_groups.hpp"
+#include "server/region_allowance.hpp"
 
 namespace tinsmith::server {
 
@@ -62,46 +63,6 @@ Group near_ones(std::span<const Polygon> all, std::span<const std::size_t> wante
     return near;
 }
 
-/// What is left of the limits.
-class Allowance {
-  public:
-    explicit Allowance(const RegionLimits& limits) : limits_(limits), left_(limits.max_visits) {}
-
-    /// False once the limits are met, and from then on. Asks whether to stop now and then.
-    bool spend(std::uint64_t visits) {
-        if (refused_) return false;
-        if (visits > left_) {
-            refused_ =
-                core::Error{core::ErrorCode::CrossingBudget,
-                            "the regions have more than " + std::to_string(limits_.max_visits) +
-                                " triangles and edges together with those of the polygons "
-                                "near them; ask for fewer at a time, or have max_crossings raised",
-                            {}};
-            return false;
-        }
-        left_ -= visits;
-        constexpr std::uint64_t kAskEvery = 4096;
-        spent_ += visits;
-        if (spent_ < kAskEvery) return true;
-        spent_ = 0;
-        return goes_on();
-    }
-
-    bool goes_on() {
-        if (!refused_ && limits_.cancelled && limits_.cancelled())
-            refused_ = core::Error{core::ErrorCode::Cancelled, "the question was stopped", {}};
-        return !refused_;
-    }
-
-    const std::optional<core::Error>& refused() const { return refused_; }
-
-  private:
-    const RegionLimits& limits_;
-    std::uint64_t left_;
-    std::uint64_t spent_ = 0;  ///< since the last question
-    std::optional<core::Error> refused_;
-};
-
 class RegionTelling {
   public:
     RegionTelling(const RegionGround& ground, const RegionLimits& limits)
@@ -136,7 +97,7 @@ class RegionTelling {
             if (!allowance_.spend(region.triangles.size())) return false;
             for (const core::TriangleId t : region.triangles)
                 around_[t.index()] = groups_.with(around_[t.index()]);
-            if (!spend_ids(groups_.count() - groups_before)) return false;
+            if (!allowance_.spend_ids(groups_.count() - groups_before)) return false;
             if (polygon.is_wanted) regions_[i] = std::move(region);
         }
         return true;
@@ -178,7 +139,7 @@ class RegionTelling {
         Group within;
         for (std::size_t k = 0; k < sorted.size();) {
             const PolygonGroups::Id id = sorted[k].first;
-            if (!spend_ids(groups_.size(id))) return false;
+            if (!allowance_.spend_ids(groups_.size(id))) return false;
             Group others = groups_.members(id);
             std::erase(others, polygon);
             Group still;
@@ -216,7 +177,7 @@ class RegionTelling {
         }
         std::vector<std::pair<Group, std::vector<Ends>>> told;
         for (auto& [id, pairs] : edges) {
-            if (!spend_ids(groups_.size(id))) return false;
+            if (!allowance_.spend_ids(groups_.size(id))) return false;
             told.emplace_back(groups_.members(id), std::move(pairs));
         }
         std::sort(told.begin(), told.end());
@@ -230,12 +191,6 @@ class RegionTelling {
         return std::binary_search(triangles.begin(), triangles.end(), t);
     }
 
-    /// An id, or a group, takes the room of some triangles.
-    bool spend_ids(std::size_t count) {
-        constexpr std::uint64_t kTrianglesOfAnId = 8;
-        return allowance_.spend(kTrianglesOfAnId * count);
-    }
-
     std::vector<std::string> ids_of(const Group& group) const {
         std::vector<std::string> ids;
         ids.reserve(group.size());
@@ -245,7 +200,7 @@ class RegionTelling {
     }
 
     const RegionGround& ground_;
-    Allowance allowance_;
+    RegionAllowance allowance_;
     PolygonGroups groups_;
     std::vector<PolygonGroups::Id> around_;                       ///< by triangle
     std::unordered_map<std::uint64_t, PolygonGroups::Id> along_;  ///< by `core::edge_key`

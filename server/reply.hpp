@@ -13,6 +13,9 @@ inline constexpr const char* kJson = "application/json";
 inline constexpr const char* kGeoJson = "application/geo+json";
 inline constexpr const char* kDelta = "application/vnd.tinsmith.delta";
 inline constexpr const char* kGlb = "model/gltf-binary";
+inline constexpr const char* kGltf = "model/gltf+json";
+inline constexpr const char* kObj = "model/obj";
+inline constexpr const char* kXml = "application/xml";
 
 /// What the strong tag of a representation has in the end when it is sent as gzip.
 inline constexpr std::string_view kGzipSuffix = "-gzip";

@@ -49,7 +49,15 @@ struct DrapedCopy {
     bool more = false;  ///< others follow these
 };
 
+/// A session's mesh at a version, and the polygons that lay in it then.
+struct SessionState {
+    core::Tin tin;
+    std::vector<Polygon> polygons;
+    std::vector<AppliedPtr> held;  ///< what the polygons are views of; the session must live, too
+};
+
 using VersionOutcome = std::variant<core::Tin, VersionGone, VersionAhead, core::Errors>;
+using StateOutcome = std::variant<SessionState, VersionGone, VersionAhead, core::Errors>;
 
 /// One terrain in memory: its mesh, its version and its polygons.
 ///
@@ -76,6 +84,8 @@ class Session {
     /// were undone or removed since, run again. Requires nothing of the session but its lock for
     /// the time of a copy. Errors: cancelled.
     VersionOutcome tin_at(std::uint64_t version, const RunLimits& limits) const;
+    /// The same with the polygons of that version.
+    StateOutcome state_at(std::uint64_t version, const RunLimits& limits) const;
     /// Whether `tin_at` has it; nothing: it does.
     std::variant<std::monostate, VersionGone, VersionAhead> missing(std::uint64_t version) const;
     /// Bytes of a copy of the mesh. Waits for no edit.

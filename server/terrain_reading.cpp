@@ -72,7 +72,10 @@ constexpr Reader kReaders[] = {
      [](std::string_view bytes, const api::TerrainOptions& options, const api::ReadLimits& limits) {
          return api::read_ascii_grid(bytes, options, limits);
      }},
-    {TerrainFormat::Csv, kCsvTypes, api::read_csv},
+    {TerrainFormat::Csv, kCsvTypes,
+     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
+         return api::read_csv(bytes, limits);
+     }},
     {TerrainFormat::Glb, kGlbTypes,
      [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
          return api::read_glb(bytes, limits);

@@ -60,11 +60,8 @@ Number number_of(std::string_view text) {
 
 class CsvReader {
   public:
-    CsvReader(std::string_view bytes, const TerrainOptions& options, const ReadLimits& limits)
-        : text_(csv::without_mark(bytes)),
-          options_(options),
-          limits_(limits),
-          faults_(limits.max_faults) {}
+    CsvReader(std::string_view bytes, const ReadLimits& limits)
+        : text_(csv::without_mark(bytes)), limits_(limits), faults_(limits.max_faults) {}
 
     Parsed<Terrain> read() {
         if (text_.substr(0, 4096).find('\0') != text_.npos) {
@@ -74,14 +71,6 @@ class CsvReader {
                           {}}};
         }
         Terrain terrain;
-        terrain.crs = options_.crs;
-        if (!options_.unit.empty()) terrain.unit = options_.unit;
-        if (is_common_geographic(terrain.crs)) {
-            faults_.add(FaultKind::Unsupported,
-                        {"CRS_GEOGRAPHIC",
-                         terrain.crs + " is in degrees; project the points to metres first.",
-                         {}});
-        }
         read_lines();
         if (!faults_.empty()) return std::move(faults_).refusal<Terrain>();
         auto mesh = mesh_of_points(
@@ -109,7 +98,6 @@ class CsvReader {
     bool has_stopped(const csv::Lines& lines);
 
     std::string_view text_;
-    const TerrainOptions& options_;
     const ReadLimits& limits_;
     FaultLog faults_;
     csv::Separator separator_ = csv::Separator::Comma;
@@ -202,9 +190,8 @@ bool CsvReader::has_stopped(const csv::Lines& lines) {
 
 }  // namespace
 
-Parsed<Terrain> read_csv(std::string_view bytes, const TerrainOptions& options,
-                         const ReadLimits& limits) {
-    return CsvReader(bytes, options, limits).read();
+Parsed<Terrain> read_csv(std::string_view bytes, const ReadLimits& limits) {
+    return CsvReader(bytes, limits).read();
 }
 
 bool looks_like_csv(std::string_view bytes) {

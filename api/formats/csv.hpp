@@ -16,9 +16,8 @@ namespace tinsmith::api {
 /// Lines that begin with # and empty ones are passed over. Numbers have a decimal point; a decimal
 /// comma is a fault. UTF-8, with or without its mark; lines end with LF, CR LF or CR.
 /// Names every fault, up to the limit, with its line and column; `index` is the point's number from
-/// 0. The terrain's system and unit are those of the options. Memory: the points and the result.
-Parsed<Terrain> read_csv(std::string_view bytes, const TerrainOptions& options,
-                         const ReadLimits& limits);
+/// 0. Memory: the points and the result.
+Parsed<Terrain> read_csv(std::string_view bytes, const ReadLimits& limits);
 
 /// Whether bytes that say nothing else of themselves look like such lines: the first one that is
 /// not passed over is three numbers, or a header that names x, y and z, or degrees.

@@ -37,6 +37,18 @@ void set_normals(draco::PointAttribute& attribute, const DracoPiece& piece) {
         out = std::copy(normal.begin(), normal.end(), out);
 }
 
+/// Whole numbers pass through Draco bit for bit.
+int add_feature(draco::Mesh& mesh, std::uint16_t feature, std::size_t count) {
+    draco::GeometryAttribute attribute;
+    attribute.Init(draco::GeometryAttribute::GENERIC, nullptr, 1, draco::DT_UINT16, false,
+                   sizeof(feature), 0);
+    draco::PointAttribute* made =
+        mesh.attribute(mesh.AddAttribute(attribute, true, static_cast<std::uint32_t>(count)));
+    auto* out = reinterpret_cast<std::uint16_t*>(made->buffer()->data());
+    std::fill(out, out + count, feature);
+    return static_cast<int>(made->unique_id());
+}
+
 void set_triangles(draco::Mesh& mesh, const DracoPiece& piece) {
     mesh.SetNumFaces(piece.triangles.size());
     for (std::uint32_t i = 0; i < piece.triangles.size(); ++i) {
@@ -109,6 +121,8 @@ std::variant<DracoBytes, EncodeError> encode_draco(const DracoPiece& piece) {
         set_normals(*normals, piece);
         result.normal_id = static_cast<int>(normals->unique_id());
     }
+    for (const std::uint16_t feature : piece.features)
+        result.feature_ids.push_back(add_feature(mesh, feature, piece.positions.size()));
     set_triangles(mesh, piece);
 
     draco::Encoder encoder;

@@ -49,7 +49,12 @@ EncodeError bad_mesh(const char* what, std::size_t index) {
 }
 
 /// Draco's encoder is not hardened: what it takes for granted is looked at here.
-std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOptions& options) {
+std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOptions& options,
+                                      const RegionPartition* regions) {
+    if (regions != nullptr && regions->features.size() > kMostRegionFeatures)
+        return EncodeError{EncodeFault::BadOption,
+                           "regions=true numbers at most " + std::to_string(kMostRegionFeatures) +
+                               " polygons, there are " + std::to_string(regions->features.size())};
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance))
         return EncodeError{EncodeFault::BadOption, "tolerance must be a positive number of metres"};
     if (!(options.unit_to_metre > 0.0 && options.unit_to_metre <= kLargestUnit))
@@ -102,8 +107,9 @@ std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const Gl
         for (const GlbPrimitive& primitive : node.primitives) {
             if (primitive.mode != GlbMode::Triangles) continue;
             ++result.primitives;
-            triangles +=
-                primitive.draco ? primitive.draco->triangles : primitive.indices.size() / 3;
+            triangles += primitive.draco     ? primitive.draco->triangles
+                         : primitive.meshopt ? primitive.meshopt->indices.count / 3
+                                             : primitive.indices.size() / 3;
             if (primitive.draco)
                 result.bits = std::max(result.bits, primitive.draco->position_bits);
         }
@@ -125,19 +131,20 @@ std::variant<std::vector<GlbNode>, EncodeError> compressed(const SceneInput& inp
                                                            const Box<double>& bounds,
                                                            GltfResult& result) {
     const GltfOptions& options = input.options;
-    const std::optional<PositionGrid> grid = grid_for(bounds, options.tolerance);
-    if (!grid)
+    const std::optional<PositionGrid> coarsest = grid_for(bounds, options.tolerance);
+    if (!coarsest)
         return EncodeError{EncodeFault::ToleranceTooFine,
                            "too fine for a mesh of this extent; ask for tolerance=" +
                                as_text(finest_tolerance(bounds)) + " or coarser"};
-    const std::vector<GridPoint> points = quantize(input.mesh, options.unit_to_metre, *grid);
-    const PlanCheck check = check_plan(points, input.mesh.triangles);
-    result.origin = grid->origin;
-    result.step = grid->step();
-    result.axis_error = largest_error(input.mesh, options.unit_to_metre, *grid, points);
+    const auto [grid, points, check] =
+        best_positions(input.mesh, options.unit_to_metre, *coarsest,
+                       options.compression == Compression::Draco ? kDracoSteps : kMeshoptSteps);
+    result.origin = grid.origin;
+    result.step = grid.step();
+    result.axis_error = largest_error(input.mesh, options.unit_to_metre, grid, points);
     result.flipped = check.flipped;
     result.collapsed = check.collapsed;
-    return draco_nodes(input, *grid, points);
+    return grid_nodes(input, grid, points);
 }
 
 std::vector<GlbNode> plain(const SceneInput& input, const Box<double>& bounds, GltfResult& result) {
@@ -167,33 +174,53 @@ std::vector<GlbNode> plain(const SceneInput& input, const Box<double>& bounds, G
     return nodes;
 }
 
-}  // namespace
-
-std::variant<GltfResult, EncodeError> write_glb(const core::MeshData& mesh,
-                                                const GltfOptions& options) {
-    if (std::optional<EncodeError> fault = find_fault(mesh, options)) return *std::move(fault);
+std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const GltfOptions& options,
+                                            const RegionPartition* regions,
+                                            GltfContainer container) {
+    if (std::optional<EncodeError> fault = find_fault(mesh, options, regions))
+        return *std::move(fault);
     const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre);
     std::vector<std::array<float, 3>> normals;
     if (options.normals) normals = smooth_normals(mesh);
-    const SceneInput input{mesh, options, normals};
+    // Where no polygon has an inside there is nothing to tell apart.
+    const bool has_regions = regions != nullptr && !regions->features.empty();
+    std::vector<SceneGroup> groups;
+    if (has_regions) groups = groups_of(*regions);
+    const SceneInput input{mesh, options, normals, groups};
 
     GltfResult result;
     std::variant<std::vector<GlbNode>, EncodeError> nodes;
-    if (options.compression == Compression::Draco) {
-        nodes = compressed(input, bounds, result);
-    } else {
+    if (options.compression == Compression::None) {
         nodes = plain(input, bounds, result);
+    } else {
+        nodes = compressed(input, bounds, result);
     }
     if (auto* error = std::get_if<EncodeError>(&nodes)) return std::move(*error);
     GlbScene scene;
     scene.generator = "Tinsmith";
     scene.nodes = std::get<std::vector<GlbNode>>(std::move(nodes));
+    if (has_regions) scene.table = property_table(*regions);
+    if (regions != nullptr) scene.regions = regions_extras(*regions);
     if (auto error = count_primitives(mesh, options, scene.nodes, result)) return *std::move(error);
     scene.extras = extras_of(mesh, options, result);
-    auto file = write_glb_file(scene);
+    auto file = write_gltf_file(scene, container);
     if (auto* error = std::get_if<EncodeError>(&file)) return std::move(*error);
     result.bytes = std::get<std::string>(std::move(file));
     return result;
+}
+
+}  // namespace
+
+std::variant<GltfResult, EncodeError> write_glb(const core::MeshData& mesh,
+                                                const GltfOptions& options,
+                                                const RegionPartition* regions) {
+    return write(mesh, options, regions, GltfContainer::Glb);
+}
+
+std::variant<GltfResult, EncodeError> write_gltf(const core::MeshData& mesh,
+                                                 const GltfOptions& options,
+                                                 const RegionPartition* regions) {
+    return write(mesh, options, regions, GltfContainer::Json);
 }
 
 }  // namespace tinsmith::api

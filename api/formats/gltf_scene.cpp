@@ -4,61 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
+#include "api/formats/gltf_pieces.hpp"
+
 namespace tinsmith::api {
 namespace {
-
-using Items = std::vector<std::uint32_t>;
-
-template <std::size_t N>
-using Corners = std::array<std::uint32_t, N>;
-
-/// Part of the mesh with its own vertex numbers: vertex i of the piece is mesh vertex vertices[i].
-template <std::size_t N>
-struct Piece {
-    std::vector<std::uint32_t> vertices;
-    std::vector<Corners<N>> corners;
-};
-
-/// Takes pieces out of one mesh. Numbers go by first use; cost is the piece's, not the mesh's.
-class PieceCutter {
-  public:
-    explicit PieceCutter(std::size_t vertices) : number_(vertices, kNone) {}
-
-    template <std::size_t N>
-    Piece<N> cut(std::span<const Corners<N>> all, std::span<const std::uint32_t> chosen) {
-        Piece<N> piece;
-        piece.corners.reserve(chosen.size());
-        for (const std::uint32_t item : chosen) {
-            Corners<N>& corners = piece.corners.emplace_back();
-            for (std::size_t i = 0; i < N; ++i) {
-                std::uint32_t& number = number_[all[item][i]];
-                if (number == kNone) {
-                    number = static_cast<std::uint32_t>(piece.vertices.size());
-                    piece.vertices.push_back(all[item][i]);
-                }
-                corners[i] = number;
-            }
-        }
-        for (const std::uint32_t vertex : piece.vertices)
-            number_[vertex] = kNone;
-        return piece;
-    }
-
-  private:
-    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> number_;
-};
-
-Items all_of(std::size_t count) {
-    Items items(count);
-    std::iota(items.begin(), items.end(), std::uint32_t{0});
-    return items;
-}
 
 template <typename T>
 void append(std::vector<T>& to, const std::array<T, 3>& from) {
@@ -67,9 +19,13 @@ void append(std::vector<T>& to, const std::array<T, 3>& from) {
 
 /// Fills the plain arrays. `position_of` gives a mesh vertex's float32 position in session axes.
 template <std::size_t N, typename PositionOf>
-GlbPrimitive plain_primitive(const SceneInput& input, const Piece<N>& piece,
-                             const PositionOf& position_of) {
+GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
+                             const Piece<N>& piece, const PositionOf& position_of) {
     GlbPrimitive primitive;
+    if (group != nullptr) {
+        primitive.features = group->features;
+        primitive.polygons = group->polygons;
+    }
     primitive.mode = N == 2 ? GlbMode::Lines : GlbMode::Triangles;
     const bool with_normals = N == 3 && !input.normals.empty();
     primitive.positions.reserve(piece.vertices.size() * 3);
@@ -91,10 +47,10 @@ GlbPrimitive plain_primitive(const SceneInput& input, const Piece<N>& piece,
 }
 
 /// Makes the primitives and nodes of one mesh on its grid.
-class DracoSceneBuilder {
+class GridSceneBuilder {
   public:
-    DracoSceneBuilder(const SceneInput& input, const PositionGrid& grid,
-                      std::span<const GridPoint> points)
+    GridSceneBuilder(const SceneInput& input, const PositionGrid& grid,
+                     std::span<const GridPoint> points)
         : input_(input), grid_(grid), points_(points), cutter_(points.size()) {
         Box<std::int32_t> box;
         for (const GridPoint& point : points)
@@ -106,28 +62,50 @@ class DracoSceneBuilder {
     }
 
     std::variant<std::vector<GlbNode>, EncodeError> build() {
-        if (fits_tile_ && one_node_) {
-            add_tile(all_of(input_.mesh.triangles.size()));
+        if (input_.groups.empty()) {
+            add_group({all_of(input_.mesh.triangles.size()), {}, {}});
         } else {
-            const std::vector<Box<std::int32_t>> boxes = boxes_of<3>(input_.mesh.triangles);
-            Tiling tiling = split_into_tiles(boxes, kDracoSteps);
-            for (const Items& tile : tiling.tiles)
-                add_tile(tile);
-            add_plain<3>(input_.mesh.triangles, std::move(tiling.too_large));
+            for (const SceneGroup& group : input_.groups)
+                add_group(group);
         }
+        group_ = nullptr;
         if (input_.options.constraints)
-            add_plain<2>(input_.mesh.constraints, all_of(input_.mesh.constraints.size()));
+            add_spread<2>(input_.mesh.constraints, all_of(input_.mesh.constraints.size()));
         if (error_) return *std::move(error_);
         return std::move(nodes_);
     }
 
   private:
+    void add_group(const SceneGroup& group) {
+        group_ = &group;
+        const std::span<const Corners<3>> all = input_.mesh.triangles;
+        if (input_.options.compression == Compression::Meshopt)
+            return add_spread<3>(all, group.triangles);
+        if (fits_tile_ && one_node_) return add_tile(group.triangles);
+        Tiling tiling = split_into_tiles(boxes_of<3>(all, group.triangles), kDracoSteps);
+        for (Items* items : pointers_to(tiling)) {
+            for (std::uint32_t& item : *items)
+                item = group.triangles[item];
+        }
+        for (const Items& tile : tiling.tiles)
+            add_tile(tile);
+        add_spread<3>(all, std::move(tiling.too_large));
+    }
+
+    static std::vector<Items*> pointers_to(Tiling& tiling) {
+        std::vector<Items*> all{&tiling.too_large};
+        for (Items& tile : tiling.tiles)
+            all.push_back(&tile);
+        return all;
+    }
+
     template <std::size_t N>
-    std::vector<Box<std::int32_t>> boxes_of(std::span<const Corners<N>> all) const {
-        std::vector<Box<std::int32_t>> boxes(all.size());
-        for (std::size_t item = 0; item < all.size(); ++item) {
-            for (const std::uint32_t vertex : all[item])
-                boxes[item].add(points_[vertex]);
+    std::vector<Box<std::int32_t>> boxes_of(std::span<const Corners<N>> all,
+                                            std::span<const std::uint32_t> items) const {
+        std::vector<Box<std::int32_t>> boxes(items.size());
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            for (const std::uint32_t vertex : all[items[i]])
+                boxes[i].add(points_[vertex]);
         }
         return boxes;
     }
@@ -165,46 +143,60 @@ class DracoSceneBuilder {
         return {point[0] - shift[0], point[1] - shift[1], point[2] - shift[2]};
     }
 
+    /// A piece as it lies on the grid, in the file's axes.
+    struct OnGrid {
+        std::vector<GridPoint> positions;
+        std::vector<std::array<float, 3>> normals;
+        Box<std::int32_t> box;
+    };
+
+    OnGrid on_grid(const Piece<3>& piece, const GridPoint& shift) const {
+        const UpAxis up = input_.options.up;
+        OnGrid made;
+        made.positions.reserve(piece.vertices.size());
+        if (!input_.normals.empty()) made.normals.reserve(piece.vertices.size());
+        for (const std::uint32_t vertex : piece.vertices) {
+            made.positions.push_back(to_axes(local(vertex, shift), up));
+            made.box.add(made.positions.back());
+            if (!input_.normals.empty())
+                made.normals.push_back(to_axes(input_.normals[vertex], up));
+        }
+        return made;
+    }
+
+    void add_compressed(const GridPoint& shift, const OnGrid& piece, GlbPrimitive primitive) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            primitive.low[axis] = grid_.step() * piece.box.low[axis];
+            primitive.high[axis] = grid_.step() * piece.box.high[axis];
+        }
+        primitive.features = group_->features;
+        primitive.polygons = group_->polygons;
+        node_at(shift).push_back(std::move(primitive));
+    }
+
     void add_tile(std::span<const std::uint32_t> triangles) {
         const Piece<3> piece = cutter_.cut<3>(input_.mesh.triangles, triangles);
         const GridPoint shift = shift_for(piece.vertices);
-        const UpAxis up = input_.options.up;
-        std::vector<GridPoint> positions;
-        std::vector<std::array<float, 3>> normals;
-        positions.reserve(piece.vertices.size());
-        if (!input_.normals.empty()) normals.reserve(piece.vertices.size());
-        Box<std::int32_t> box;
-        for (const std::uint32_t vertex : piece.vertices) {
-            positions.push_back(to_axes(local(vertex, shift), up));
-            box.add(positions.back());
-            if (!input_.normals.empty()) normals.push_back(to_axes(input_.normals[vertex], up));
-        }
-        auto encoded = encode_draco({positions, normals, piece.corners, grid_.exponent});
+        const OnGrid made = on_grid(piece, shift);
+        auto encoded = encode_draco(
+            {made.positions, made.normals, piece.corners, grid_.exponent, group_->features});
         if (const auto* error = std::get_if<EncodeError>(&encoded)) {
             error_ = *error;
             return;
         }
         GlbPrimitive primitive;
         primitive.draco = std::get<DracoBytes>(std::move(encoded));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            primitive.low[axis] = grid_.step() * box.low[axis];
-            primitive.high[axis] = grid_.step() * box.high[axis];
-        }
-        node_at(shift).push_back(std::move(primitive));
+        add_compressed(shift, made, std::move(primitive));
     }
 
-    /// Triangles or edges without compression, on the same grid. More nodes have a tiling of their
-    /// own: float32 reaches kFloatSteps to both sides of a node that is half a metre off the
-    /// middle.
+    /// Triangles or edges without Draco, on the same grid. More nodes have a tiling of their own:
+    /// float32 reaches kFloatSteps to both sides of a node that is half a metre off the middle.
     template <std::size_t N>
-    void add_plain(std::span<const Corners<N>> all, Items items) {
+    void add_spread(std::span<const Corners<N>> all, Items items) {
         if (items.empty()) return;
-        if (one_node_) return add_plain_piece<N>(all, items);
-        std::vector<Box<std::int32_t>> boxes;
-        const std::vector<Box<std::int32_t>> all_boxes = boxes_of<N>(all);
-        for (const std::uint32_t item : items)
-            boxes.push_back(all_boxes[item]);
-        Tiling tiling = split_into_tiles(boxes, 2 * (kFloatSteps - grid_.period()));
+        if (one_node_) return add_spread_piece<N>(all, items);
+        Tiling tiling =
+            split_into_tiles(boxes_of<N>(all, items), 2 * (kFloatSteps - grid_.period()));
         if (!tiling.too_large.empty()) {
             error_ = EncodeError{EncodeFault::ToleranceTooFine,
                                  "an edge is too long for float32 at this tolerance; ask for a "
@@ -214,16 +206,25 @@ class DracoSceneBuilder {
         for (Items& tile : tiling.tiles) {
             for (std::uint32_t& item : tile)
                 item = items[item];
-            add_plain_piece<N>(all, tile);
+            add_spread_piece<N>(all, tile);
         }
     }
 
     template <std::size_t N>
-    void add_plain_piece(std::span<const Corners<N>> all, std::span<const std::uint32_t> items) {
+    void add_spread_piece(std::span<const Corners<N>> all, std::span<const std::uint32_t> items) {
         const Piece<N> piece = cutter_.cut<N>(all, items);
         const GridPoint shift = shift_for(piece.vertices);
+        if constexpr (N == 3) {
+            if (input_.options.compression == Compression::Meshopt) {
+                const OnGrid made = on_grid(piece, shift);
+                GlbPrimitive primitive;
+                primitive.meshopt = encode_meshopt({made.positions, made.normals, piece.corners,
+                                                    grid_.exponent, group_->features});
+                return add_compressed(shift, made, std::move(primitive));
+            }
+        }
         const float step = static_cast<float>(grid_.step());
-        node_at(shift).push_back(plain_primitive(input_, piece, [&](std::uint32_t vertex) {
+        node_at(shift).push_back(plain_primitive(input_, group_, piece, [&](std::uint32_t vertex) {
             const GridPoint n = local(vertex, shift);
             return std::array<float, 3>{static_cast<float>(n[0]) * step,
                                         static_cast<float>(n[1]) * step,
@@ -237,6 +238,7 @@ class DracoSceneBuilder {
     PieceCutter cutter_;
     bool fits_tile_ = true;
     bool one_node_ = true;
+    const SceneGroup* group_ = nullptr;  ///< that triangles are being added of
     std::vector<GlbNode> nodes_;
     std::optional<EncodeError> error_;
 };
@@ -273,25 +275,50 @@ std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh) {
     return normals;
 }
 
-std::variant<std::vector<GlbNode>, EncodeError> draco_nodes(const SceneInput& input,
-                                                            const PositionGrid& grid,
-                                                            std::span<const GridPoint> points) {
-    return DracoSceneBuilder(input, grid, points).build();
+std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& input,
+                                                           const PositionGrid& grid,
+                                                           std::span<const GridPoint> points) {
+    return GridSceneBuilder(input, grid, points).build();
 }
 
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
                    std::span<const std::array<float, 3>> positions) {
     const auto position_of = [&](std::uint32_t vertex) { return positions[vertex]; };
     GlbNode node{"terrain", to_axes(origin, input.options.up), {}};
-    const Piece<3> whole{all_of(positions.size()), input.mesh.triangles};
-    node.primitives.push_back(plain_primitive(input, whole, position_of));
+    if (input.groups.empty()) {
+        const Piece<3> whole{all_of(positions.size()), input.mesh.triangles};
+        node.primitives.push_back(plain_primitive(input, nullptr, whole, position_of));
+    }
+    PieceCutter cutter(positions.size());
+    for (const SceneGroup& group : input.groups) {
+        const Piece<3> piece = cutter.cut<3>(input.mesh.triangles, group.triangles);
+        node.primitives.push_back(plain_primitive(input, &group, piece, position_of));
+    }
     if (input.options.constraints && !input.mesh.constraints.empty()) {
         const Piece<2> lines =
-            PieceCutter(positions.size())
-                .cut<2>(input.mesh.constraints, all_of(input.mesh.constraints.size()));
-        node.primitives.push_back(plain_primitive(input, lines, position_of));
+            cutter.cut<2>(input.mesh.constraints, all_of(input.mesh.constraints.size()));
+        node.primitives.push_back(plain_primitive(input, nullptr, lines, position_of));
     }
     return node;
+}
+
+std::vector<SceneGroup> groups_of(const RegionPartition& regions) {
+    std::vector<SceneGroup> all(regions.sets.size());
+    for (std::uint32_t t = 0; t < regions.set_of.size(); ++t)
+        all[regions.set_of[t]].triangles.push_back(t);
+    std::vector<SceneGroup> groups;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].triangles.empty()) continue;
+        const std::vector<std::uint32_t>& set = regions.sets[i];
+        for (const std::uint32_t feature : set)
+            all[i].polygons.push_back(regions.features[feature].id);
+        for (std::size_t k = 0; k < std::min(set.size(), kMostFeatureSets); ++k)
+            all[i].features.push_back(static_cast<std::uint16_t>(set[set.size() - 1 - k]));
+        if (set.empty())
+            all[i].features.push_back(static_cast<std::uint16_t>(regions.features.size()));
+        groups.push_back(std::move(all[i]));
+    }
+    return groups;
 }
 
 }  // namespace tinsmith::api

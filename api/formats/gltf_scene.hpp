@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -25,21 +27,33 @@ std::array<T, 3> to_axes(const std::array<T, 3>& v, UpAxis up) {
 /// each weighted by its area. (0, 0, 1) where that is zero. Cost: one pass.
 std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh);
 
-/// What the mesh's primitives are made of. `normals` as from smooth_normals, or empty.
+/// Triangles that lie in the same polygons.
+struct SceneGroup {
+    std::vector<std::uint32_t> triangles;
+    std::vector<std::uint16_t> features;  ///< rows of the newest polygons; see GlbPrimitive
+    std::vector<std::string> polygons;    ///< ids of all, in the order in which they came
+};
+
+/// A group for each set that has triangles: the ground, if any is left, and then the regions.
+std::vector<SceneGroup> groups_of(const RegionPartition& regions);
+
+/// What the mesh's primitives are made of. `normals` as from smooth_normals, or empty. Where there
+/// are groups, each triangle is in one of them.
 struct SceneInput {
     const core::MeshData& mesh;
     const GltfOptions& options;
     std::span<const std::array<float, 3>> normals;
+    std::span<const SceneGroup> groups;
 };
 
-/// Draco primitives on the grid: one if it fits, else tiles, and constraint lines; see write_glb.
-/// Requires: a valid mesh, `points` as from quantize.
-std::variant<std::vector<GlbNode>, EncodeError> draco_nodes(const SceneInput& input,
-                                                            const PositionGrid& grid,
-                                                            std::span<const GridPoint> points);
+/// Primitives on the grid, with Draco or meshopt: one for each group if it fits, else tiles, and
+/// constraint lines; see write_glb. Requires: a valid mesh, `points` as from quantize.
+std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& input,
+                                                           const PositionGrid& grid,
+                                                           std::span<const GridPoint> points);
 
-/// One node with the mesh in its own order, `positions` in session axes from `origin`, and
-/// constraint lines.
+/// One node with the mesh in its own order, or group by group, `positions` in session axes from
+/// `origin`, and constraint lines.
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
                    std::span<const std::array<float, 3>> positions);
 

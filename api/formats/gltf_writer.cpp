@@ -5,8 +5,10 @@
 // tinygltf uses std::ifstream in what TINYGLTF_NO_FS leaves, without including it.
 #include <fstream>
 #include <limits>
+#include <map>
 #include <sstream>
-#include <string_view>
+
+#include "api/formats/gltf_container.hpp"
 
 // Compiled here rather than linked from the distribution: without files, images and image
 // downloads, which a server has no use for.
@@ -22,154 +24,234 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr std::string_view kDracoExtension = "KHR_draco_mesh_compression";
+constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
+constexpr const char* kFeatureExtension = "EXT_mesh_features";
 
 int as_index(std::size_t n) {
     return static_cast<int>(n);
 }
 
-/// Appends bytes at the next multiple of 4 and gives the new view's index.
-int add_view(tinygltf::Model& model, const void* bytes, std::size_t size, int target) {
-    std::vector<unsigned char>& data = model.buffers.front().data;
-    data.resize((data.size() + 3) / 4 * 4, 0);
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = data.size();
-    view.byteLength = size;
-    view.target = target;
-    data.resize(data.size() + size);
-    std::memcpy(data.data() + view.byteOffset, bytes, size);
-    model.bufferViews.push_back(std::move(view));
-    return as_index(model.bufferViews.size() - 1);
-}
-
-/// `view` is -1 for what Draco holds: the accessor then only tells counts and bounds.
-int add_accessor(tinygltf::Model& model, int view, int component, int type, std::size_t count) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView = view;
-    accessor.componentType = component;
-    accessor.type = type;
-    accessor.count = count;
-    model.accessors.push_back(std::move(accessor));
-    return as_index(model.accessors.size() - 1);
-}
-
-int add_vectors(tinygltf::Model& model, int view, std::size_t count) {
-    return add_accessor(model, view, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, count);
-}
-
-void set_box(tinygltf::Accessor& accessor, const GlbPrimitive& primitive) {
-    accessor.minValues.assign(primitive.low.begin(), primitive.low.end());
-    accessor.maxValues.assign(primitive.high.begin(), primitive.high.end());
-}
-
-int add_plain_vectors(tinygltf::Model& model, const std::vector<float>& values) {
-    const int view =
-        add_view(model, values.data(), values.size() * sizeof(float), TINYGLTF_TARGET_ARRAY_BUFFER);
-    return add_vectors(model, view, values.size() / 3);
-}
-
-void fill_plain(tinygltf::Model& model, const GlbPrimitive& from, tinygltf::Primitive& to) {
-    to.attributes["POSITION"] = add_plain_vectors(model, from.positions);
-    if (!from.normals.empty()) to.attributes["NORMAL"] = add_plain_vectors(model, from.normals);
-    const int view =
-        add_view(model, from.indices.data(), from.indices.size() * sizeof(std::uint32_t),
-                 TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-    to.indices = add_accessor(model, view, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                              TINYGLTF_TYPE_SCALAR, from.indices.size());
-}
-
-void fill_draco(tinygltf::Model& model, const DracoBytes& from, tinygltf::Primitive& to) {
-    // No target: the bytes are neither vertices nor indices until a client has decoded them.
-    const int view = add_view(model, from.bytes.data(), from.bytes.size(), 0);
-    Value::Object attributes;
-    attributes["POSITION"] = Value(from.position_id);
-    to.attributes["POSITION"] = add_vectors(model, -1, from.points);
-    if (from.normal_id) {
-        attributes["NORMAL"] = Value(*from.normal_id);
-        to.attributes["NORMAL"] = add_vectors(model, -1, from.points);
-    }
-    to.indices = add_accessor(model, -1, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-                              from.triangles * 3);
-    Value::Object extension;
-    extension["bufferView"] = Value(view);
-    extension["attributes"] = Value(std::move(attributes));
-    to.extensions[std::string(kDracoExtension)] = Value(std::move(extension));
-}
-
-void add_primitive(tinygltf::Model& model, tinygltf::Mesh& mesh, const GlbPrimitive& from) {
-    tinygltf::Primitive to;
-    to.mode = from.mode == GlbMode::Lines ? TINYGLTF_MODE_LINE : TINYGLTF_MODE_TRIANGLES;
-    if (from.draco) {
-        fill_draco(model, *from.draco, to);
-        if (model.extensionsRequired.empty()) {
-            model.extensionsUsed.emplace_back(kDracoExtension);
-            model.extensionsRequired.emplace_back(kDracoExtension);
+/// Puts a scene into a model of tinygltf, and its bytes beside it.
+class ModelBuilder {
+  public:
+    explicit ModelBuilder(const GlbScene& from) : from_(from) {
+        model_.asset.version = "2.0";
+        model_.asset.generator = from.generator;
+        tinygltf::Scene scene;
+        for (const GlbNode& node : from.nodes)
+            add_node(scene, node);
+        Value::Object extras;
+        for (const auto& [name, extra] : from.extras)
+            extras[name] = extra_value(extra);
+        scene.extras = Value(std::move(extras));
+        model_.scenes.push_back(std::move(scene));
+        model_.defaultScene = 0;
+        for (const auto& [name, is_required] : extensions_) {
+            model_.extensionsUsed.emplace_back(name);
+            if (is_required) model_.extensionsRequired.emplace_back(name);
         }
-    } else {
-        fill_plain(model, from, to);
     }
-    set_box(model.accessors[static_cast<std::size_t>(to.attributes["POSITION"])], from);
-    mesh.primitives.push_back(std::move(to));
-}
 
-Value extra_value(const GlbExtra& extra) {
-    if (const auto* number = std::get_if<double>(&extra)) return Value(*number);
-    if (const auto* text = std::get_if<std::string>(&extra)) return Value(*text);
-    if (const auto* count = std::get_if<std::size_t>(&extra)) {
-        // tinygltf's integers are ints; a count beyond is whole as a double too.
-        if (*count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-            return Value(static_cast<double>(*count));
-        return Value(static_cast<int>(*count));
+    /// The model as JSON, but for what tinygltf cannot write: the buffers, extensions of their
+    /// views, the metadata.
+    std::string json() const {
+        std::ostringstream out;
+        tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, out, false, false);
+        return std::move(out).str();
     }
-    Value::Array numbers;
-    for (const double number : std::get<std::array<double, 3>>(extra))
-        numbers.emplace_back(number);
-    return Value(std::move(numbers));
-}
 
-void add_node(tinygltf::Model& model, tinygltf::Scene& scene, const GlbNode& from) {
-    tinygltf::Mesh mesh;
-    mesh.name = from.name;
-    for (const GlbPrimitive& primitive : from.primitives)
-        add_primitive(model, mesh, primitive);
-    model.meshes.push_back(std::move(mesh));
-    tinygltf::Node node;
-    node.name = from.name;
-    node.mesh = as_index(model.meshes.size() - 1);
-    node.translation.assign(from.translation.begin(), from.translation.end());
-    model.nodes.push_back(std::move(node));
-    scene.nodes.push_back(as_index(model.nodes.size() - 1));
-}
+    GltfBytes take_bytes() { return std::move(bytes_); }
+
+  private:
+    int add_view(const void* data, std::size_t size, int target, std::size_t stride = 0) {
+        tinygltf::BufferView view;
+        view.buffer = 0;
+        view.byteOffset = bytes_.append(data, size);
+        view.byteLength = size;
+        view.byteStride = stride;
+        view.target = target;
+        model_.bufferViews.push_back(std::move(view));
+        return as_index(model_.bufferViews.size() - 1);
+    }
+
+    int add_view(const MeshoptView& from) {
+        tinygltf::BufferView view;
+        view.buffer = 1;
+        view.byteLength = from.count * from.stride;
+        view.byteOffset = bytes_.append_compressed(model_.bufferViews.size(), from);
+        if (!from.is_triangles) view.byteStride = from.stride;
+        view.target =
+            from.is_triangles ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER;
+        model_.bufferViews.push_back(std::move(view));
+        return as_index(model_.bufferViews.size() - 1);
+    }
+
+    /// `view` is -1 for what Draco holds: the accessor then only tells counts and bounds.
+    int add_accessor(int view, int component, int type, std::size_t count) {
+        tinygltf::Accessor accessor;
+        accessor.bufferView = view;
+        accessor.componentType = component;
+        accessor.type = type;
+        accessor.count = count;
+        model_.accessors.push_back(std::move(accessor));
+        return as_index(model_.accessors.size() - 1);
+    }
+
+    int add_vectors(int view, std::size_t count) {
+        return add_accessor(view, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, count);
+    }
+    int add_indices(int view, std::size_t count) {
+        return add_accessor(view, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+                            count);
+    }
+    int add_features(int view, std::size_t count) {
+        return add_accessor(view, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR,
+                            count);
+    }
+
+    int add_plain_vectors(const std::vector<float>& values) {
+        const int view =
+            add_view(values.data(), values.size() * sizeof(float), TINYGLTF_TARGET_ARRAY_BUFFER);
+        return add_vectors(view, values.size() / 3);
+    }
+
+    static std::string feature_attribute(std::size_t i) {
+        return "_FEATURE_ID_" + std::to_string(i);
+    }
+
+    void fill_plain(const GlbPrimitive& from, tinygltf::Primitive& to) {
+        to.attributes["POSITION"] = add_plain_vectors(from.positions);
+        if (!from.normals.empty()) to.attributes["NORMAL"] = add_plain_vectors(from.normals);
+        const std::size_t vertices = from.positions.size() / 3;
+        for (std::size_t i = 0; i < from.features.size(); ++i) {
+            // 16 bits each and as many of padding: vertices begin at multiples of 4 bytes.
+            const std::vector<std::uint32_t> ids(vertices, from.features[i]);
+            const int view = add_view(ids.data(), ids.size() * sizeof(ids[0]),
+                                      TINYGLTF_TARGET_ARRAY_BUFFER, sizeof(ids[0]));
+            to.attributes[feature_attribute(i)] = add_features(view, vertices);
+        }
+        const int view = add_view(from.indices.data(), from.indices.size() * sizeof(std::uint32_t),
+                                  TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+        to.indices = add_indices(view, from.indices.size());
+    }
+
+    void fill_draco(const DracoBytes& from, tinygltf::Primitive& to) {
+        // No target: the bytes are neither vertices nor indices until a client has decoded them.
+        const int view = add_view(from.bytes.data(), from.bytes.size(), 0);
+        Value::Object attributes;
+        attributes["POSITION"] = Value(from.position_id);
+        to.attributes["POSITION"] = add_vectors(-1, from.points);
+        if (from.normal_id) {
+            attributes["NORMAL"] = Value(*from.normal_id);
+            to.attributes["NORMAL"] = add_vectors(-1, from.points);
+        }
+        for (std::size_t i = 0; i < from.feature_ids.size(); ++i) {
+            attributes[feature_attribute(i)] = Value(from.feature_ids[i]);
+            to.attributes[feature_attribute(i)] = add_features(-1, from.points);
+        }
+        to.indices = add_indices(-1, from.triangles * 3);
+        Value::Object extension;
+        extension["bufferView"] = Value(view);
+        extension["attributes"] = Value(std::move(attributes));
+        to.extensions[kDracoExtension] = Value(std::move(extension));
+        extensions_[kDracoExtension] = true;
+    }
+
+    void fill_meshopt(const MeshoptBytes& from, tinygltf::Primitive& to) {
+        const std::size_t vertices = from.positions.count;
+        to.attributes["POSITION"] = add_vectors(add_view(from.positions), vertices);
+        for (const MeshoptView& normals : from.normals)
+            to.attributes["NORMAL"] = add_vectors(add_view(normals), vertices);
+        for (std::size_t i = 0; i < from.features.size(); ++i)
+            to.attributes[feature_attribute(i)] =
+                add_features(add_view(from.features[i]), vertices);
+        to.indices = add_indices(add_view(from.indices), from.indices.count);
+        extensions_[std::string(kMeshoptExtension)] = true;
+    }
+
+    void tell_features(const GlbPrimitive& from, tinygltf::Primitive& to) {
+        const std::size_t none = from_.table->rows;
+        Value::Array sets;
+        for (std::size_t i = 0; i < from.features.size(); ++i) {
+            Value::Object set;
+            set["attribute"] = Value(as_index(i));
+            set["featureCount"] = Value(1);
+            set["propertyTable"] = Value(0);
+            if (from.features[i] == none) set["nullFeatureId"] = Value(as_index(none));
+            sets.emplace_back(std::move(set));
+        }
+        Value::Object extension;
+        extension["featureIds"] = Value(std::move(sets));
+        to.extensions[kFeatureExtension] = Value(std::move(extension));
+        extensions_[kFeatureExtension] = false;
+        extensions_[std::string(kMetadataExtension)] = false;
+        Value::Array polygons;
+        for (const std::string& id : from.polygons)
+            polygons.emplace_back(id);
+        Value::Object extras;
+        extras["polygons"] = Value(std::move(polygons));
+        to.extras = Value(std::move(extras));
+    }
+
+    void add_primitive(tinygltf::Mesh& mesh, const GlbPrimitive& from) {
+        tinygltf::Primitive to;
+        to.mode = from.mode == GlbMode::Lines ? TINYGLTF_MODE_LINE : TINYGLTF_MODE_TRIANGLES;
+        if (from.draco) {
+            fill_draco(*from.draco, to);
+        } else if (from.meshopt) {
+            fill_meshopt(*from.meshopt, to);
+        } else {
+            fill_plain(from, to);
+        }
+        if (from_.table && !from.features.empty()) tell_features(from, to);
+        auto& position = model_.accessors[static_cast<std::size_t>(to.attributes["POSITION"])];
+        position.minValues.assign(from.low.begin(), from.low.end());
+        position.maxValues.assign(from.high.begin(), from.high.end());
+        mesh.primitives.push_back(std::move(to));
+    }
+
+    void add_node(tinygltf::Scene& scene, const GlbNode& from) {
+        tinygltf::Mesh mesh;
+        mesh.name = from.name;
+        for (const GlbPrimitive& primitive : from.primitives)
+            add_primitive(mesh, primitive);
+        model_.meshes.push_back(std::move(mesh));
+        tinygltf::Node node;
+        node.name = from.name;
+        node.mesh = as_index(model_.meshes.size() - 1);
+        node.translation.assign(from.translation.begin(), from.translation.end());
+        model_.nodes.push_back(std::move(node));
+        scene.nodes.push_back(as_index(model_.nodes.size() - 1));
+    }
+
+    static Value extra_value(const GlbExtra& extra) {
+        if (const auto* number = std::get_if<double>(&extra)) return Value(*number);
+        if (const auto* text = std::get_if<std::string>(&extra)) return Value(*text);
+        if (const auto* count = std::get_if<std::size_t>(&extra)) {
+            // tinygltf's integers are ints; a count beyond is whole as a double too.
+            if (*count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+                return Value(static_cast<double>(*count));
+            return Value(static_cast<int>(*count));
+        }
+        Value::Array numbers;
+        for (const double number : std::get<std::array<double, 3>>(extra))
+            numbers.emplace_back(number);
+        return Value(std::move(numbers));
+    }
+
+    const GlbScene& from_;
+    tinygltf::Model model_;
+    GltfBytes bytes_;
+    std::map<std::string, bool> extensions_;  ///< those in use; whether nothing works without
+};
 
 }  // namespace
 
-std::variant<std::string, EncodeError> write_glb_file(const GlbScene& from) {
-    tinygltf::Model model;
-    model.asset.version = "2.0";
-    model.asset.generator = from.generator;
-    model.buffers.emplace_back();
-    tinygltf::Scene scene;
-    for (const GlbNode& node : from.nodes)
-        add_node(model, scene, node);
-    Value::Object extras;
-    for (const auto& [name, extra] : from.extras)
-        extras[name] = extra_value(extra);
-    scene.extras = Value(std::move(extras));
-    model.scenes.push_back(std::move(scene));
-    model.defaultScene = 0;
-
-    // The lengths in a GLB are 32 bits, and tinygltf does not check; the JSON is about a kilobyte
-    // for each primitive.
-    constexpr std::size_t kRoomForJson = std::size_t{1} << 28;
-    if (model.buffers.front().data.size() >
-        std::numeric_limits<std::uint32_t>::max() - kRoomForJson)
-        return EncodeError{EncodeFault::TooLarge,
-                           "the mesh passes the 4 GiB that a GLB can hold; ask for a smaller bbox "
-                           "or for compression=draco"};
-    std::ostringstream out;
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, out, false, true);
-    return std::move(out).str();
+std::variant<std::string, EncodeError> write_gltf_file(const GlbScene& from,
+                                                       GltfContainer container) {
+    ModelBuilder model(from);
+    const std::string json = model.json();
+    return pack_gltf(json, from, model.take_bytes(), container);
 }
 
 }  // namespace tinsmith::api

@@ -11,21 +11,28 @@
 #include <vector>
 
 #include "api/formats/draco_encoder.hpp"
+#include "api/formats/gltf_features.hpp"
+#include "api/formats/meshopt_encoder.hpp"
 
 namespace tinsmith::api {
 
 enum class GlbMode { Triangles, Lines };
 
-/// One primitive in glTF's axes. Either `draco` holds everything and the three arrays are empty,
-/// or the arrays hold it plainly: positions and normals as x, y, z in turn.
+/// One primitive in glTF's axes. Either `draco` or `meshopt` holds everything and the three arrays
+/// are empty, or the arrays hold it plainly: positions and normals as x, y, z in turn.
 struct GlbPrimitive {
     GlbMode mode = GlbMode::Triangles;
     std::array<double, 3> low{};  ///< box of the float32 positions as clients decode them
     std::array<double, 3> high{};
     std::optional<DracoBytes> draco;
+    std::optional<MeshoptBytes> meshopt;
     std::vector<float> positions;
     std::vector<float> normals;  ///< empty: none
     std::vector<std::uint32_t> indices;
+    /// The rows of the property table that all its vertices have, the row beyond the last for none;
+    /// none at all: it is not of a region.
+    std::vector<std::uint16_t> features;
+    std::vector<std::string> polygons;  ///< ids, told in `extras` beside the features
 };
 
 /// A node with one mesh; the translation is written as JSON doubles.
@@ -42,12 +49,19 @@ struct GlbScene {
     std::string generator;
     std::vector<GlbNode> nodes;
     std::vector<std::pair<std::string, GlbExtra>> extras;
+    std::optional<PropertyTable> table;  ///< what the primitives' features are rows of
+    std::string regions;                 ///< JSON text for the `extras`; empty: none
 };
 
-/// The scene as a binary glTF 2.0 file: a JSON chunk and one BIN chunk, all aligned to 4 bytes.
-/// KHR_draco_mesh_compression is named as used and required exactly when a primitive needs it.
-/// The same scene gives the same bytes. Fails only beyond the 4 GiB of a GLB.
-/// Cost: the buffers are copied three times.
-std::variant<std::string, EncodeError> write_glb_file(const GlbScene& from);
+enum class GltfContainer {
+    Glb,   ///< binary glTF 2.0: a JSON chunk and one BIN chunk, all aligned to 4 bytes
+    Json,  ///< glTF 2.0 as JSON, the buffer in it as a data URI
+};
+
+/// The scene as a file. Extensions are named as used and required exactly when something needs
+/// them. The same scene gives the same bytes. Fails only beyond the 4 GiB of a GLB.
+/// Cost: the buffers are copied twice.
+std::variant<std::string, EncodeError> write_gltf_file(const GlbScene& from,
+                                                       GltfContainer container);
 
 }  // namespace tinsmith::api

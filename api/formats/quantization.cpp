@@ -27,6 +27,29 @@ bool holds(const Box<double>& bounds, const std::array<double, 3>& middle, int e
     return std::ldexp(widest_half(bounds, middle), -exponent) < double{kGridLimit} - 1.0;
 }
 
+GridPoint nearest_point(const core::Point3& vertex, double unit, const PositionGrid& grid) {
+    const double steps_in_metre = std::ldexp(1.0, -grid.exponent);
+    const std::array<double, 3> metres = in_metres(vertex, unit);
+    GridPoint point{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        // lrint, not lround: one instruction, and a tie goes to the even step on every machine.
+        point[axis] = static_cast<std::int32_t>(
+            std::lrint((metres[axis] - grid.origin[axis]) * steps_in_metre));
+    }
+    return point;
+}
+
+/// The triangles that are flipped or collapsed.
+std::vector<std::array<std::uint32_t, 3>> faulty(
+    std::span<const GridPoint> points, std::span<const std::array<std::uint32_t, 3>> triangles) {
+    std::vector<std::array<std::uint32_t, 3>> found;
+    for (const auto& corners : triangles) {
+        const PlanCheck check = check_plan(points, {&corners, 1});
+        if (check.flipped + check.collapsed > 0) found.push_back(corners);
+    }
+    return found;
+}
+
 }  // namespace
 
 double PositionGrid::step() const {
@@ -74,18 +97,10 @@ double finest_tolerance(const Box<double>& bounds) {
 
 std::vector<GridPoint> quantize(const core::MeshData& mesh, double unit_to_metre,
                                 const PositionGrid& grid) {
-    const double steps_in_metre = std::ldexp(1.0, -grid.exponent);
     std::vector<GridPoint> points;
     points.reserve(mesh.vertices.size());
-    for (const core::Point3& vertex : mesh.vertices) {
-        const std::array<double, 3> metres = in_metres(vertex, unit_to_metre);
-        GridPoint& point = points.emplace_back();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            // lrint, not lround: one instruction, and a tie goes to the even step on every machine.
-            point[axis] = static_cast<std::int32_t>(
-                std::lrint((metres[axis] - grid.origin[axis]) * steps_in_metre));
-        }
-    }
+    for (const core::Point3& vertex : mesh.vertices)
+        points.push_back(nearest_point(vertex, unit_to_metre, grid));
     return points;
 }
 
@@ -116,6 +131,41 @@ PlanCheck check_plan(std::span<const GridPoint> points,
         if (left == right) ++check.collapsed;
     }
     return check;
+}
+
+GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
+                             const PositionGrid& coarsest, std::int32_t span) {
+    const auto at = [&](const PositionGrid& grid) {
+        GridPositions made{grid, quantize(mesh, unit_to_metre, grid), {}};
+        made.check = check_plan(made.points, mesh.triangles);
+        return made;
+    };
+    const auto faults = [](const PlanCheck& check) { return check.flipped + check.collapsed; };
+    GridPositions best = at(coarsest);
+    if (faults(best.check) == 0) return best;
+    const double half = widest_half(bounds_in_metres(mesh, unit_to_metre), coarsest.origin);
+    const auto suspects = faulty(best.points, mesh.triangles);
+    PositionGrid finer = coarsest;
+    // Ends: each step doubles the number of steps across the mesh, which `span` bounds, or the
+    // exponent comes to its end.
+    while (faults(best.check) > 0 && --finer.exponent >= kFinestExponent &&
+           std::ldexp(half, -finer.exponent) < span / 2.0 - 1.0) {
+        // Only where it helps some of those that need help is it worth a look at all.
+        PlanCheck still;
+        for (const auto& corners : suspects) {
+            std::array<GridPoint, 3> points{};
+            for (std::size_t i = 0; i < 3; ++i)
+                points[i] = nearest_point(mesh.vertices[corners[i]], unit_to_metre, finer);
+            constexpr std::array<std::uint32_t, 3> kOne{0, 1, 2};
+            const PlanCheck one = check_plan(points, {&kOne, 1});
+            still.flipped += one.flipped;
+            still.collapsed += one.collapsed;
+        }
+        if (faults(still) >= faults(best.check)) continue;
+        GridPositions next = at(finer);
+        if (faults(next.check) < faults(best.check)) best = std::move(next);
+    }
+    return best;
 }
 
 }  // namespace tinsmith::api

@@ -108,6 +108,21 @@ std::array<double, 3> largest_error(const core::MeshData& mesh, double unit_to_m
 PlanCheck check_plan(std::span<const GridPoint> points,
                      std::span<const std::array<std::uint32_t, 3>> triangles);
 
+/// A mesh on a grid, and how its triangles came out.
+struct GridPositions {
+    PositionGrid grid;
+    std::vector<GridPoint> points;
+    PlanCheck check;
+};
+
+/// The mesh on that grid; or on the coarsest of those finer ones on which fewest triangles are
+/// flipped or collapsed. Finer ones count while the box of the points is at most `span` steps wide
+/// on each axis and within half of that of the origin, so that no primitive more comes of it.
+/// Cost: two passes where nothing is flipped or collapsed; else two more for each grid that mends
+/// some of these, at most kDracoBits.
+GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
+                             const PositionGrid& coarsest, std::int32_t span);
+
 /// Items sorted into tiles, each tile's indices rising.
 struct Tiling {
     std::vector<std::vector<std::uint32_t>> tiles;

@@ -12,6 +12,7 @@
 #include "server/commands/complaints.hpp"
 #include "server/commands/progress.hpp"
 #include "server/file_io.hpp"
+#include "server/mesh_source.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/services.hpp"
 #include "server/terrain_reading.hpp"
@@ -91,15 +92,31 @@ bool write_output(const std::string& path, std::string_view content) {
 }
 
 int write_results(const IntegrateConfig& config, const Session& session,
-                  const PolygonResult& result, bool dry_run, api::GltfOptions options,
+                  const PolygonResult& result, bool dry_run, api::MeshOptions options,
                   ProgressBar& bar) {
     if (!result.mesh) {
         bar.clear();
         complain("not enough memory for a copy of the mesh");
         return kExitRefused;
     }
-    options.unit_to_metre = api::metres_per(session.facts().unit);
-    const auto written = api::write_glb(*result.mesh, options);
+    options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
+    if (options.regions && dry_run) {
+        bar.clear();
+        complain("a dry run makes no regions: leave --regions or --dry-run out");
+        return kExitUsage;
+    }
+    MeshGround ground{*result.mesh, result.version, {}};
+    if (options.regions) ground = ground_now(session, true);
+    const auto found = source_of(std::move(ground), options, session.facts().unit, {});
+    if (const auto* no = std::get_if<NoSource>(&found)) {
+        bar.clear();
+        const auto* fault = std::get_if<api::Fault>(no);
+        complain(fault != nullptr ? fault->detail : std::get<core::Errors>(*no).front().detail);
+        return kExitRefused;
+    }
+    const auto& source = std::get<MeshSource>(found);
+    const auto written =
+        api::write_glb(source.mesh, options.gltf, source.regions ? &*source.regions : nullptr);
     bar.clear();
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
         complain(config.output + ": " + error->detail);

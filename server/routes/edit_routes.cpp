@@ -15,7 +15,7 @@ namespace tinsmith::server {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kAnswerTypes{kJson, kGlb, kDelta};
+constexpr std::array<std::string_view, 4> kAnswerTypes{kJson, kGlb, kDelta, kGltf};
 
 std::optional<Response> refusal_of_type(const Request& request) {
     const std::string type = api::media_type_of(request.header("content-type").value_or(""));
@@ -65,11 +65,13 @@ Step<Wishes> require_wishes(Services& services, const Request& request, const Se
 
 Response send_edit(const Request& request, const Session& session, const EditResult& result,
                    const Wishes& wishes) {
-    Response response =
-        wishes.type == 1 ? mesh_after(request, session, result.version, result.mesh, wishes.dry_run)
-        : wishes.type == 2 ? delta_response(request, session, result.version, result.delta)
-                           : ok(kJson, api::write_edit(session.facts().id, result.version,
-                                                       wishes.dry_run, *result.answer));
+    Response response = wishes.type == 1 || wishes.type == 3
+                            ? mesh_after(request, session, result.version, result.mesh,
+                                         wishes.dry_run, kAnswerTypes[wishes.type])
+                        : wishes.type == 2
+                            ? delta_response(request, session, result.version, result.delta)
+                            : ok(kJson, api::write_edit(session.facts().id, result.version,
+                                                        wishes.dry_run, *result.answer));
     if (!wishes.dry_run) response.with("Link", history_link(session, result.version));
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
 }
@@ -100,7 +102,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     auto& edit = std::get<PendingEdit>(made);
     begin_stage(0.8);
     edit.dry_run = wishes.dry_run;
-    edit.want_mesh = kAnswerTypes[wishes.type] == kGlb;
+    edit.want_mesh = kAnswerTypes[wishes.type] == kGlb || kAnswerTypes[wishes.type] == kGltf;
     edit.want_delta = kAnswerTypes[wishes.type] == kDelta;
     edit.expected_version = wishes.expected_version;
     const auto outcome = session.edit(std::move(edit));

@@ -55,6 +55,9 @@ Response get_locks(Services&, const Request&, const PathArguments&);
 Response list_regions(Services&, const Request&, const PathArguments&);
 Response get_region(Services&, const Request&, const PathArguments&);
 
+// constraint_routes.cpp
+Response list_constraints(Services&, const Request&, const PathArguments&);
+
 // job_routes.cpp
 Response list_jobs(Services&, const Request&, const PathArguments&);
 Response get_job(Services&, const Request&, const PathArguments&);
@@ -70,7 +73,10 @@ Response get_delta(Services&, const Request&, const PathArguments&);  ///< mesh?
 // mesh_routes.cpp
 Response get_mesh(Services&, const Request&, const PathArguments&);
 Response get_mesh_glb(Services&, const Request&, const PathArguments&);
+Response get_mesh_gltf(Services&, const Request&, const PathArguments&);
 Response get_mesh_json(Services&, const Request&, const PathArguments&);
+Response get_mesh_obj(Services&, const Request&, const PathArguments&);
+Response get_mesh_landxml(Services&, const Request&, const PathArguments&);
 
 // question_routes.cpp: nothing changes
 Response get_elevation(Services&, const Request&, const PathArguments&);

@@ -12,6 +12,7 @@
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
 #include "api/terrain_options.hpp"
+#include "server/mesh_source.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
@@ -23,7 +24,7 @@ namespace tinsmith::server {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kAnswerTypes{kJson, kGlb};
+constexpr std::array<std::string_view, 3> kAnswerTypes{kJson, kGlb, kGltf};
 constexpr std::string_view kTerrain = "terrain";
 constexpr std::string_view kPolygons = "polygons";
 constexpr std::string_view kOptions = "options";
@@ -108,7 +109,7 @@ std::optional<LoadedTerrain> read_terrain(const Services& services, const api::F
 
 struct Options {
     std::vector<api::NamedOption> polygons;
-    api::GltfOptions mesh;
+    api::MeshOptions mesh;
     api::TerrainOptions terrain;
 };
 
@@ -149,9 +150,10 @@ Options read_options(const Services& services, const api::FormPart* part, FormFa
     return options;
 }
 
-Response send(const Request& request, const Session& session, const PolygonResult& result,
-              bool dry_run, bool as_glb, api::GltfOptions options) {
-    if (!as_glb) {
+Response send(const Services& services, const Request& request, const Session& session,
+              const PolygonResult& result, std::size_t type, bool dry_run,
+              api::MeshOptions options) {
+    if (type == 0) {
         return ok(kJson, api::write_report({{},
                                             result.version,
                                             dry_run,
@@ -164,16 +166,43 @@ Response send(const Request& request, const Session& session, const PolygonResul
                       "There is no memory for a copy of the mesh: ask for the report, or try "
                       "again later.");
     }
-    options.unit_to_metre = api::metres_per(session.facts().unit);
-    return glb_response(request, *result.mesh, options);
+    MeshGround ground{*result.mesh, result.version, {}};
+    if (options.regions) ground = ground_now(session, true);
+    auto found =
+        source_of(std::move(ground), options, session.facts().unit,
+                  {services.limits.max_crossings, deadline(services.limits, services.stopping)});
+    if (auto* no = std::get_if<NoSource>(&found)) {
+        if (const auto* errors = std::get_if<core::Errors>(no))
+            return refuse_question(request, *errors);
+        api::Fault fault = std::get<api::Fault>(std::move(*no));
+        fault.parameter.clear();
+        fault.pointer = "/" + std::string(kOptions) + "/bbox";
+        return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, {std::move(fault)}));
+    }
+    const auto& source = std::get<MeshSource>(found);
+    options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
+    return gltf_response(request, source.mesh, options.gltf,
+                         {kAnswerTypes[type], source.regions ? &*source.regions : nullptr});
+}
+
+/// The regions of a mesh that is not kept are nowhere to be found.
+std::optional<Response> refusal_of_dry_regions(const Request& request, bool dry_run,
+                                               const api::MeshOptions& options) {
+    if (!dry_run || !options.regions) return std::nullopt;
+    return refuse(
+        request, api::problem_of_faults(
+                     api::FaultKind::Invalid,
+                     {{"CONTRADICTION", "A dry run makes no regions: leave regions or dry_run out.",
+                       "/" + std::string(kOptions) + "/regions"}}));
 }
 
 /// Everything has been read.
 Response integrate(Services& services, const Request& request, LoadedTerrain terrain,
-                   PolygonWork work, bool as_glb, const api::GltfOptions& options) {
+                   PolygonWork work, std::size_t type, const api::MeshOptions& options) {
+    if (auto refusal = refusal_of_dry_regions(request, work.edit.dry_run, options)) return *refusal;
     const auto memory = require_memory(services, request, terrain.tin.memory_bytes());
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
-    work.edit.want_mesh = as_glb;
+    work.edit.want_mesh = type != 0;
     begin_stage(0.8);
     set_budgets(work.edit, services.limits, services.stopping);
     const bool dry_run = work.edit.dry_run;
@@ -192,7 +221,8 @@ Response integrate(Services& services, const Request& request, LoadedTerrain ter
         return refuse(request, api::problem_of_errors(*errors, std::move(faults.faults)));
     }
     begin_stage(1.0);
-    return send(request, session, std::get<PolygonResult>(outcome), dry_run, as_glb, options);
+    return send(services, request, session, std::get<PolygonResult>(outcome), type, dry_run,
+                options);
 }
 
 }  // namespace
@@ -234,7 +264,7 @@ Response integrate_once(Services& services, const Request& request, const PathAr
         return refuse(request, api::problem_of_faults(faults.kind, std::move(faults.faults)));
     }
     return integrate(services, request, *std::move(terrain), *std::move(work),
-                     std::get<0>(accepted) == 1, options.mesh)
+                     std::get<0>(accepted), options.mesh)
         .with("Vary", "Accept");
 }
 

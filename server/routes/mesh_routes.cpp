@@ -1,40 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "api/crs.hpp"
+#include "api/formats/landxml_writer.hpp"
+#include "api/formats/obj_writer.hpp"
 #include "api/responses.hpp"
 #include "server/answer_finish.hpp"
+#include "server/mesh_source.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kMeshTypes{kGlb, kJson};
+enum class MeshFormat { Glb, Json, Gltf, Obj, LandXml };
+
+/// In the order of the formats.
+constexpr std::array<std::string_view, 5> kMeshTypes{kGlb, kJson, kGltf, kObj, kXml};
 constexpr int kDone = 200;
 
-/// Every option in the tag and in the key; none: what is sent unless told otherwise.
-std::string suffix_of(const api::GltfOptions& options) {
+/// Meshes with full doubles have few options.
+constexpr std::array<std::string_view, 2> kJsonOptions{"version", "bbox"};
+constexpr std::array<std::string_view, 3> kExchangeOptions{"version", "bbox", "constraints"};
+
+bool is_gltf(MeshFormat format) {
+    return format == MeshFormat::Glb || format == MeshFormat::Gltf;
+}
+
+std::span<const std::string_view> options_of(MeshFormat format) {
+    if (is_gltf(format)) return api::mesh_option_names();
+    return format == MeshFormat::Json ? std::span<const std::string_view>(kJsonOptions)
+                                      : std::span<const std::string_view>(kExchangeOptions);
+}
+
+/// Every option of glTF in the tag and in the key; none: what is sent unless told otherwise.
+std::string gltf_suffix_of(const api::MeshOptions& options) {
     // Names all members: one that is added has to be told apart here too. The unit is the
     // session's.
-    const auto& [compression, tolerance, up, constraints, normals, unit] = options;
+    const auto& [gltf, regions, bbox] = options;
+    const auto& [compression, tolerance, up, constraints, normals, unit] = gltf;
     const api::GltfOptions usual;
-    if (compression == usual.compression && tolerance == usual.tolerance && up == usual.up &&
-        constraints == usual.constraints && normals == usual.normals) {
-        return "-glb";
+    std::string suffix;
+    if (compression != usual.compression || tolerance != usual.tolerance || up != usual.up ||
+        constraints != usual.constraints || normals != usual.normals) {
+        suffix += compression == api::Compression::Draco     ? "-draco-"
+                  : compression == api::Compression::Meshopt ? "-meshopt-"
+                                                             : "-none-";
+        suffix += text_of(tolerance);
+        suffix += up == api::UpAxis::Y ? "-y" : "-z";
+        if (constraints) suffix += "-constraints";
+        if (normals) suffix += "-normals";
     }
-    std::string suffix = compression == api::Compression::Draco ? "-glb-draco-" : "-glb-none-";
-    suffix += text_of(tolerance);
-    suffix += up == api::UpAxis::Y ? "-y" : "-z";
-    if (constraints) suffix += "-constraints";
-    if (normals) suffix += "-normals";
+    if (regions) suffix += "-regions";
+    return suffix;
+}
+
+std::string suffix_of(MeshFormat format, const api::MeshOptions& options) {
+    static constexpr std::array<std::string_view, 5> kNames{"-glb", "-json", "-gltf", "-obj",
+                                                            "-landxml"};
+    std::string suffix(kNames[static_cast<std::size_t>(format)]);
+    if (is_gltf(format)) suffix += gltf_suffix_of(options);
+    const bool has_edges = format == MeshFormat::Obj || format == MeshFormat::LandXml;
+    if (has_edges && options.gltf.constraints) suffix += "-constraints";
+    if (const auto& box = options.bbox) {
+        suffix += "-bbox";
+        for (const double bound : {box->min_x, box->min_y, box->max_x, box->max_y})
+            suffix += "_" + text_of(bound);
+    }
     return suffix;
 }
 
@@ -65,21 +107,29 @@ Step<std::optional<std::uint64_t>> require_version(const Request& request, const
 }
 
 /// A copy of the mesh as it is now or was, or why there is none.
-Step<MeshCopy> copy_mesh(Services& services, const Session& session, const Request& request,
-                         std::optional<std::uint64_t> version) {
-    if (!version) return session.copy_mesh();
-    const auto memory = require_memory(services, request, session.mesh_bytes_since(*version));
+Step<MeshGround> copy_ground(Services& services, const Session& session, const Request& request,
+                             std::optional<std::uint64_t> version, bool regions) {
+    std::size_t bytes = version ? session.mesh_bytes_since(*version) : 0;
+    if (regions) {
+        bytes += session.mesh_bytes() +
+                 session.look([](const core::Tin& tin, const std::vector<Polygon>& polygons,
+                                 std::uint64_t) { return region_bytes(tin, polygons); });
+    }
+    const auto memory = require_memory(services, request, bytes);
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
-    const auto tin = session.tin_at(*version, rerun_limits(services.limits, services.stopping));
-    if (const auto* mesh = std::get_if<core::Tin>(&tin)) return MeshCopy{mesh->to_data(), *version};
-    return refuse_version(request, session, tin);
+    if (!version) return ground_now(session, regions);
+    const auto limits = rerun_limits(services.limits, services.stopping);
+    const auto outcome = session.state_at(*version, limits);
+    if (const auto* state = std::get_if<SessionState>(&outcome))
+        return ground_of(*state, *version, regions);
+    return refuse_version(request, session, outcome);
 }
 
 /// One representation of the mesh: conditions first, then what is kept, then `write`, which makes
 /// an answer of a copy of the mesh. What `write` refuses goes out and is not kept.
 template <typename Write>
 Response send(Services& services, const Session& session, const Request& request,
-              const std::string& suffix, const Write& write) {
+              const std::string& suffix, bool regions, const Write& write) {
     const auto asked = require_version(request, session);
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
     const std::uint64_t version = std::get<0>(asked).value_or(session.view().version);
@@ -87,13 +137,13 @@ Response send(Services& services, const Session& session, const Request& request
     std::optional<Response> refusal;
     const std::string& birth = session.facts().birth;
     const auto encode = [&]() -> MeshCache::Found {
-        auto copy = copy_mesh(services, session, request, std::get<0>(asked));
+        auto copy = copy_ground(services, session, request, std::get<0>(asked), regions);
         if (auto* none = std::get_if<Response>(&copy)) {
             refusal = std::move(*none);
             return nullptr;
         }
-        const auto& [mesh, of] = std::get<0>(copy);
-        Response response = write(mesh);
+        const std::uint64_t of = std::get<0>(copy).version;
+        Response response = write(std::get<0>(std::move(copy)));
         if (response.status == kDone) {
             return std::make_shared<const EncodedMesh>(EncodedMesh{of, std::move(response)});
         }
@@ -113,36 +163,80 @@ Response send(Services& services, const Session& session, const Request& request
     return tell(session, *found, suffix);
 }
 
-Response send_glb(Services& services, const Session& session, const Request& request) {
-    auto given = options_of_query(request);
-    std::erase_if(given, [](const api::NamedOption& option) { return option.name == "version"; });
+Response write_as(const Request& request, const SessionFacts& facts, const MeshSource& source,
+                  MeshFormat format, const api::MeshOptions& options) {
+    if (is_gltf(format)) {
+        return gltf_response(request, source.mesh, options.gltf,
+                             {kMeshTypes[static_cast<std::size_t>(format)],
+                              source.regions ? &*source.regions : nullptr});
+    }
+    Response response;
+    if (format == MeshFormat::Json) {
+        response = ok(kJson, api::write_mesh_json(source.mesh));
+    } else if (format == MeshFormat::Obj) {
+        const std::string system = facts.crs.empty() ? "no named system" : facts.crs;
+        response = ok(kObj, api::write_obj(source.mesh, options.gltf.constraints,
+                                           "Tinsmith: x y z in " + system + ", " + facts.unit));
+    } else {
+        response = ok(kXml, api::write_landxml(source.mesh, {facts.name, facts.crs, facts.unit,
+                                                             options.gltf.constraints}));
+    }
+    return response.with("Tinsmith-Triangles", std::to_string(source.mesh.triangles.size()));
+}
+
+Response refuse_source(const Request& request, NoSource no) {
+    if (const auto* errors = std::get_if<core::Errors>(&no))
+        return refuse_question(request, *errors);
+    return refuse(request, api::problem_of_faults(api::FaultKind::Parameter,
+                                                  {std::get<api::Fault>(std::move(no))}));
+}
+
+/// The query's options, but for the version, which is the session's matter.
+Step<api::MeshOptions> require_options(const Request& request, MeshFormat format) {
+    std::vector<api::NamedOption> given;
+    const auto known = options_of(format);
+    for (const api::NamedOption& option : options_of_query(request)) {
+        if (std::ranges::find(known, option.name) == known.end()) {
+            std::string names;
+            for (const std::string_view name : known)
+                names.append(names.empty() ? "" : ", ").append(name);
+            return refuse(request, api::ProblemType::InvalidParameter,
+                          "The mesh as " +
+                              std::string(kMeshTypes[static_cast<std::size_t>(format)]) +
+                              " has full doubles, z up, and no options but " + names +
+                              ". Leave \"" + option.name + "\" out, or ask for model/gltf-binary.");
+        }
+        if (option.name != "version") given.push_back(option);
+    }
     auto options = api::parse_mesh_options(given);
     if (!options) {
         return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
     }
-    options->unit_to_metre = api::metres_per(session.facts().unit);
-    return send(services, session, request, suffix_of(*options),
-                [&](const core::MeshData& mesh) { return glb_response(request, mesh, *options); });
+    // Many readers of OBJ know no lines.
+    if (format == MeshFormat::Obj && !request.parameter("constraints"))
+        options->gltf.constraints = false;
+    return *std::move(options);
 }
-
-Response send_json(Services& services, const Session& session, const Request& request) {
-    for (const auto& [name, value] : request.query) {
-        if (name == "version") continue;
-        return refuse(request, api::ProblemType::InvalidParameter,
-                      "The JSON mesh has no options but version: full doubles, z up. Leave \"" +
-                          name + "\" out, or ask for model/gltf-binary.");
-    }
-    return send(services, session, request, "-json",
-                [](const core::MeshData& mesh) { return ok(kJson, api::write_mesh_json(mesh)); });
-}
-
-using Sender = Response (*)(Services&, const Session&, const Request&);
 
 Response send_mesh(Services& services, const Request& request, const std::string& id,
-                   Sender sender) {
-    const auto session = require_session(services, request, id);
-    if (const auto* refusal = std::get_if<Response>(&session)) return *refusal;
-    return sender(services, *std::get<0>(session), request);
+                   MeshFormat format) {
+    const auto found = require_session(services, request, id);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    const Session& session = *std::get<0>(found);
+    const auto asked = require_options(request, format);
+    if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
+    api::MeshOptions options = std::get<0>(asked);
+    options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
+    return send(services, session, request, suffix_of(format, options), options.regions,
+                [&](MeshGround ground) {
+                    auto source = source_of(std::move(ground), options, session.facts().unit,
+                                            {services.limits.max_crossings,
+                                             deadline(services.limits, services.stopping)});
+                    if (auto* no = std::get_if<NoSource>(&source))
+                        return refuse_source(request, std::move(*no));
+                    return write_as(request, session.facts(), std::get<MeshSource>(source), format,
+                                    options);
+                });
 }
 
 }  // namespace
@@ -152,17 +246,30 @@ Response get_mesh(Services& services, const Request& request, const PathArgument
     const auto type = require_media_type(request, kMeshTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     Response response =
-        send_mesh(services, request, arguments[0], std::get<0>(type) == 0 ? send_glb : send_json);
+        send_mesh(services, request, arguments[0], static_cast<MeshFormat>(std::get<0>(type)));
     response.with("Vary", "Accept");
     return response;
 }
 
 Response get_mesh_glb(Services& services, const Request& request, const PathArguments& arguments) {
-    return send_mesh(services, request, arguments[0], send_glb);
+    return send_mesh(services, request, arguments[0], MeshFormat::Glb);
+}
+
+Response get_mesh_gltf(Services& services, const Request& request, const PathArguments& arguments) {
+    return send_mesh(services, request, arguments[0], MeshFormat::Gltf);
 }
 
 Response get_mesh_json(Services& services, const Request& request, const PathArguments& arguments) {
-    return send_mesh(services, request, arguments[0], send_json);
+    return send_mesh(services, request, arguments[0], MeshFormat::Json);
+}
+
+Response get_mesh_obj(Services& services, const Request& request, const PathArguments& arguments) {
+    return send_mesh(services, request, arguments[0], MeshFormat::Obj);
+}
+
+Response get_mesh_landxml(Services& services, const Request& request,
+                          const PathArguments& arguments) {
+    return send_mesh(services, request, arguments[0], MeshFormat::LandXml);
 }
 
 }  // namespace tinsmith::server

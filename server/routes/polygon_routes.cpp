@@ -18,7 +18,7 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::string_view kCursorKind = "polygon";
-constexpr std::array<std::string_view, 3> kAnswerTypes{kJson, kGlb, kDelta};
+constexpr std::array<std::string_view, 4> kAnswerTypes{kJson, kGlb, kDelta, kGltf};
 constexpr std::array<std::string_view, 2> kFeatureTypes{kGeoJson, kJson};
 
 std::optional<Response> refusal_of_type(const Request& request) {
@@ -76,9 +76,9 @@ Response integrate_polygons(Services& services, const Request& request,
         return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, std::move(faults)));
     }
 
-    const bool as_glb = std::get<0>(type) == 1;
+    const bool as_mesh = std::get<0>(type) == 1 || std::get<0>(type) == 3;
     const bool as_delta = std::get<0>(type) == 2;
-    work->edit.want_mesh = as_glb;
+    work->edit.want_mesh = as_mesh;
     work->edit.want_delta = as_delta;
     work->edit.expected_version = std::get<0>(expected);
     begin_stage(0.8);
@@ -105,7 +105,8 @@ Response integrate_polygons(Services& services, const Request& request,
     }
     begin_stage(1.0);
     const auto& result = std::get<PolygonResult>(outcome);
-    Response response = as_glb ? mesh_after(request, session, result.version, result.mesh, dry_run)
+    Response response = as_mesh ? mesh_after(request, session, result.version, result.mesh, dry_run,
+                                             kAnswerTypes[std::get<0>(type)])
                         : as_delta ? delta_response(request, session, result.version, result.delta)
                                    : send_report(session, result, dry_run);
     if (!dry_run) response.with("Link", history_link(session, result.version));

@@ -96,18 +96,20 @@ std::vector<api::NamedOption> options_of_query(const Request& request) {
     return options;
 }
 
-Response glb_response(const Request& request, const core::MeshData& mesh,
-                      const api::GltfOptions& options, const std::string& note) {
-    auto written = api::write_glb(mesh, options);
+Response gltf_response(const Request& request, const core::MeshData& mesh,
+                       const api::GltfOptions& options, const GltfAnswer& as) {
+    auto written = as.type == kGlb ? api::write_glb(mesh, options, as.regions)
+                                   : api::write_gltf(mesh, options, as.regions);
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
-        return refuse(request, problem_of(error->fault), error->detail + note);
+        return refuse(request, problem_of(error->fault), error->detail + as.note);
     }
     auto& glb = std::get<api::GltfResult>(written);
-    Response response = ok(kGlb, std::move(glb.bytes));
+    Response response = ok(std::string(as.type), std::move(glb.bytes));
     response.with("Tinsmith-Max-Error", text_of(glb.max_error))
         .with("Tinsmith-Flipped-Triangles", std::to_string(glb.flipped))
         .with("Tinsmith-Collapsed-Triangles", std::to_string(glb.collapsed))
         .with("Tinsmith-Position-Bits", std::to_string(glb.bits))
+        .with("Tinsmith-Triangles", std::to_string(mesh.triangles.size()))
         .with("Tinsmith-Origin",
               text_of(glb.origin[0]) + " " + text_of(glb.origin[1]) + " " + text_of(glb.origin[2]));
     return response;
@@ -124,7 +126,8 @@ Response delta_response(const Request& request, const Session& session, std::uin
 }
 
 Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run) {
+                    const std::optional<core::MeshData>& mesh, bool dry_run,
+                    std::string_view type) {
     const std::string made =
         " The edit was made: the session has version " + std::to_string(version) + ".";
     if (!mesh) {
@@ -133,7 +136,7 @@ Response mesh_after(const Request& request, const Session& session, std::uint64_
     }
     api::GltfOptions options;
     options.unit_to_metre = api::metres_per(session.facts().unit);
-    return glb_response(request, *mesh, options, dry_run ? std::string() : made);
+    return gltf_response(request, *mesh, options, {type, nullptr, dry_run ? std::string() : made});
 }
 
 Response refuse_delta_of_dry_run(const Request& request) {
@@ -193,8 +196,10 @@ Response version_gone(const Request& request, const Session& session, const Vers
                       "/mesh?since=0 is the whole mesh.");
 }
 
-Response refuse_version(const Request& request, const Session& session,
-                        const VersionOutcome& outcome) {
+namespace {
+
+template <typename Outcome>
+Response refuse_outcome(const Request& request, const Session& session, const Outcome& outcome) {
     if (const auto* gone = std::get_if<VersionGone>(&outcome)) {
         return version_gone(request, session, *gone);
     }
@@ -206,6 +211,18 @@ Response refuse_version(const Request& request, const Session& session,
         "To make that version again took longer than this server allows, or the server is "
         "stopping.";
     return refuse(request, problem);
+}
+
+}  // namespace
+
+Response refuse_version(const Request& request, const Session& session,
+                        const VersionOutcome& outcome) {
+    return refuse_outcome(request, session, outcome);
+}
+
+Response refuse_version(const Request& request, const Session& session,
+                        const StateOutcome& outcome) {
+    return refuse_outcome(request, session, outcome);
 }
 
 std::optional<Response> refusal_of_version(const Request& request, const Session& session,

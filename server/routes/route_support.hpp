@@ -41,19 +41,25 @@ Response refuse_media_type(const Request& request, const std::string& type, std:
 /// The query as options, with no place in the body.
 std::vector<api::NamedOption> options_of_query(const Request& request);
 
-/// The mesh as GLB, with headers that say what rounding did, or why it cannot be written. `note`
-/// is told with a refusal: what has been done all the same.
-Response glb_response(const Request& request, const core::MeshData& mesh,
-                      const api::GltfOptions& options, const std::string& note = {});
+/// How a mesh goes out as glTF.
+struct GltfAnswer {
+    std::string_view type = "model/gltf-binary";    ///< or "model/gltf+json"
+    const api::RegionPartition* regions = nullptr;  ///< see api::write_glb
+    std::string note = {};  ///< told with a refusal: what has been done all the same
+};
+
+/// The mesh as glTF, with headers that say what rounding did, or why it cannot be written.
+Response gltf_response(const Request& request, const core::MeshData& mesh,
+                       const api::GltfOptions& options, const GltfAnswer& as);
 
 /// What changed, or why it cannot be sent though the edit was made.
 Response delta_response(const Request& request, const Session& session, std::uint64_t version,
                         const std::optional<api::MeshDelta>& delta);
 
-/// The mesh after an edit as GLB. The edit is made even where its mesh cannot be sent, and the
-/// answer says so, unless it was a dry run.
+/// The mesh after an edit as glTF of that type. The edit is made even where its mesh cannot be
+/// sent, and the answer says so, unless it was a dry run.
 Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run);
+                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type);
 
 /// 400: a dry run makes no version.
 Response refuse_delta_of_dry_run(const Request& request);
@@ -80,9 +86,11 @@ Response version_gone(const Request& request, const Session& session, const Vers
 std::optional<Response> refusal_of_version(const Request& request, const Session& session,
                                            std::uint64_t version);
 
-/// What `tin_at` did not give, as an answer.
+/// What `tin_at` or `state_at` did not give, as an answer.
 Response refuse_version(const Request& request, const Session& session,
                         const VersionOutcome& outcome);
+Response refuse_version(const Request& request, const Session& session,
+                        const StateOutcome& outcome);
 
 /// What the core refused of a question; faults are told at places of the body, if there is one.
 Response refuse_question(const Request& request, const core::Errors& errors,

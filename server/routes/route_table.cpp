@@ -19,7 +19,8 @@ namespace tinsmith::server {
 namespace {
 
 constexpr std::array<std::string_view, 1> kRemoval{"cascade"};
-constexpr std::array<std::string_view, 1> kVersion{"version"};
+constexpr std::array<std::string_view, 2> kJsonMesh{"version", "bbox"};
+constexpr std::array<std::string_view, 3> kExchangeMesh{"version", "bbox", "constraints"};
 constexpr std::array<std::string_view, 1> kEdit{"dry_run"};
 constexpr std::array<std::string_view, 3> kPosition{"x", "y", "crs"};
 constexpr std::array<std::string_view, 1> kCrs{"crs"};
@@ -93,8 +94,9 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/polygons", kPageParameters, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
-        {"GET", "/v1/sessions/{id}/regions", kPageParameters, json(list_regions)},
-        {"GET", "/v1/sessions/{id}/regions/{pid}", {}, json(get_region)},
+        {"GET", "/v1/sessions/{id}/regions", kPageParameters, to(list_regions)},
+        {"GET", "/v1/sessions/{id}/regions/{pid}", {}, to(get_region)},
+        {"GET", "/v1/sessions/{id}/constraints", kPageParameters, to(list_constraints)},
         {"PUT", "/v1/sessions/{id}/locks", kLockParameters, change(put_locks)},
         {"DELETE", "/v1/sessions/{id}/locks", kLockParameters, change(delete_locks)},
         {"GET", "/v1/sessions/{id}/locks", kPageParameters, to(get_locks)},
@@ -105,7 +107,10 @@ std::vector<Route> make_routes(Services& services) {
         {"GET", "/v1/sessions/{id}/history/{version}", {}, json(get_change)},
         {"GET", "/v1/sessions/{id}/mesh", mesh_parameters(), to(get_mesh)},
         {"GET", "/v1/sessions/{id}/mesh.glb", mesh, to(get_mesh_glb)},
-        {"GET", "/v1/sessions/{id}/mesh.json", kVersion, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/mesh.gltf", mesh, to(get_mesh_gltf)},
+        {"GET", "/v1/sessions/{id}/mesh.json", kJsonMesh, to(get_mesh_json)},
+        {"GET", "/v1/sessions/{id}/mesh.obj", kExchangeMesh, to(get_mesh_obj)},
+        {"GET", "/v1/sessions/{id}/mesh.xml", kExchangeMesh, to(get_mesh_landxml)},
         {"GET", "/v1/sessions/{id}/elevation", kPosition, json(get_elevation)},
         {"POST", "/v1/sessions/{id}/elevation", kCrs, long_json(ask_elevations)},
         {"POST", "/v1/sessions/{id}/profile", kCrs, long_json(ask_profile)},

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     limits.max_vertices = 10'000;
     limits.max_triangles = 20'000;
     tinsmith::api::looks_like_csv(bytes);
-    const auto parsed = tinsmith::api::read_csv(bytes, {}, limits);
+    const auto parsed = tinsmith::api::read_csv(bytes, limits);
     if (parsed) {
         if (!tinsmith::core::build_tin(parsed->mesh)) std::abort();
         return 0;

@@ -94,7 +94,7 @@ test('the filter hides what has not all the words', () => {
   const shown = page();
   const visible = () => [...shown.querySelectorAll('article[data-words]')].filter((one) => !one.hasAttribute('hidden'));
   filter(shown, 'mesh GET');
-  assert.deepEqual(visible().map((one) => one.id).sort(), ['getMesh', 'getMeshGlb', 'getMeshJson']);
+  assert.deepEqual(visible().map((one) => one.id).sort(), ['getMesh', 'getMeshGlb', 'getMeshGltf', 'getMeshJson', 'getMeshObj', 'getMeshXml']);
   assert.ok(shown.getElementById('tag-Questions').hasAttribute('hidden'));
   filter(shown, '');
   assert.equal(visible().length, description.operations.length);

@@ -133,7 +133,10 @@ export const REFUSALS = [
   ['bad-request', 'getSession', {headers: {'If-None-Match': 'no-quotes'}}],
   ['malformed-body', 'createSession', broken('{"mesh": ')],
   ['invalid-content', 'createSession', broken('{"mesh": {"vertices": [[0, 0]], "faces": []}}')],
-  ['not-available', 'getMeshGlb', {values: {compression: 'meshopt'}}],
+  ['not-available', 'integrateOnce', {body: {type: FORM, example: {value: {
+    terrain: {mesh: {vertices: [[0, 0, 0], [9, 0, 0], [0, 9, 0]], triangles: [[0, 1, 2]]}},
+    polygons: {type: 'Point', coordinates: [1, 1]}, options: {version: '3'},
+  }}}}],
   ['unknown-parameter', 'getSession', {values: {colour: 'red'}}],
   ['invalid-parameter', 'integratePolygons', {values: {snap: -1, lock: 'maybe'}, body: parcel}],
   ['unsupported-media-type', 'integratePolygons', {raw: {body: 'x,y'}, headers: {'Content-Type': 'text/csv'}}],

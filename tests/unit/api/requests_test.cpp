@@ -160,8 +160,8 @@ TEST(Options, AllSayWhatTheyTake) {
 TEST(MeshOptions, AreReadByName) {
     const auto defaults = parse_mesh_options({});
     ASSERT_TRUE(defaults);
-    EXPECT_EQ(defaults->compression, Compression::Draco);
-    EXPECT_EQ(defaults->tolerance, 0.005);
+    EXPECT_EQ(defaults->gltf.compression, Compression::Draco);
+    EXPECT_EQ(defaults->gltf.tolerance, 0.005);
     const std::vector<NamedOption> options{{"compression", "none", ""},
                                            {"tolerance", "0.25", ""},
                                            {"up", "z", ""},
@@ -169,11 +169,11 @@ TEST(MeshOptions, AreReadByName) {
                                            {"normals", "false", ""}};
     const auto parsed = parse_mesh_options(options);
     ASSERT_TRUE(parsed);
-    EXPECT_EQ(parsed->compression, Compression::None);
-    EXPECT_EQ(parsed->tolerance, 0.25);
-    EXPECT_EQ(parsed->up, UpAxis::Z);
-    EXPECT_FALSE(parsed->constraints);
-    EXPECT_FALSE(parsed->normals);
+    EXPECT_EQ(parsed->gltf.compression, Compression::None);
+    EXPECT_EQ(parsed->gltf.tolerance, 0.25);
+    EXPECT_EQ(parsed->gltf.up, UpAxis::Z);
+    EXPECT_FALSE(parsed->gltf.constraints);
+    EXPECT_FALSE(parsed->gltf.normals);
 }
 
 TEST(MeshOptions, RefuseTolerancesThatAreNone) {
@@ -183,11 +183,30 @@ TEST(MeshOptions, RefuseTolerancesThatAreNone) {
         ASSERT_FALSE(parsed) << value;
         EXPECT_EQ(parsed.kind(), FaultKind::Parameter) << "the body is not at fault";
     }
-    const std::vector<NamedOption> later{{"compression", "meshopt", ""}, {"version", "3", ""}};
+    const std::vector<NamedOption> later{{"version", "3", ""}};
     const auto parsed = parse_mesh_options(later);
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.kind(), FaultKind::Unsupported);
-    EXPECT_EQ(parsed.faults().size(), 2U);
+    EXPECT_EQ(parsed.faults().size(), 1U);
+}
+
+TEST(MeshOptions, TakeABoxAndRegions) {
+    const std::vector<NamedOption> options{
+        {"compression", "meshopt", ""}, {"regions", "true", ""}, {"bbox", "-1.5,2,3e2,2", ""}};
+    const auto parsed = parse_mesh_options(options);
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->gltf.compression, Compression::Meshopt);
+    EXPECT_TRUE(parsed->regions);
+    ASSERT_TRUE(parsed->bbox);
+    EXPECT_EQ(parsed->bbox->min_x, -1.5);
+    EXPECT_EQ(parsed->bbox->min_y, 2.0);
+    EXPECT_EQ(parsed->bbox->max_x, 300.0);
+    EXPECT_EQ(parsed->bbox->max_y, 2.0);
+    for (const char* value : {"", "1,2,3", "1,2,3,4,5", "1,2,3,", "3,2,1,4", "1,4,3,2", "1,2,3,nan",
+                              "1, 2,3,4", "1;2;3;4", "1,2,3,1e16"}) {
+        const std::vector<NamedOption> bad{{"bbox", value, ""}};
+        EXPECT_FALSE(parse_mesh_options(bad)) << value;
+    }
 }
 
 }  // namespace

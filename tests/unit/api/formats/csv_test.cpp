@@ -16,7 +16,7 @@ const Points kSquare{{0, 0, 1}, {10, 0, 2.5}, {10, 10, -3}, {0, 10, 4}};
 
 void expect_square(std::string_view text) {
     SCOPED_TRACE(std::string(text));
-    const auto terrain = read_csv(text, {}, {});
+    const auto terrain = read_csv(text, {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->mesh.vertices, kSquare);
     EXPECT_EQ(terrain->mesh.triangles.size(), 2U);
@@ -52,28 +52,11 @@ TEST(Csv, TakesColumnsByTheNamesOfAHeader) {
 
 TEST(Csv, ReadsTheNearestDouble) {
     const auto terrain = read_csv(
-        "0.1,0.30000000000000004,1e-3\n123456789.123456789,0,2\n.5,5.,1.7976931348623157e0\n", {},
-        {});
+        "0.1,0.30000000000000004,1e-3\n123456789.123456789,0,2\n.5,5.,1.7976931348623157e0\n", {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->mesh.vertices[0], (core::Point3{0.1, 0.30000000000000004, 1e-3}));
     EXPECT_EQ(terrain->mesh.vertices[1].x, 123456789.123456789);
     EXPECT_EQ(terrain->mesh.vertices[2], (core::Point3{0.5, 5.0, 1.7976931348623157}));
-}
-
-TEST(Csv, HasTheSystemAndUnitOfTheOptions) {
-    const std::string_view text = "0,0,1\n10,0,2\n0,10,3\n";
-    EXPECT_EQ(read_csv(text, {}, {})->unit, "metre");
-    TerrainOptions options;
-    options.crs = "EPSG:2264";
-    options.unit = "US survey foot";
-    const auto terrain = read_csv(text, options, {});
-    EXPECT_EQ(terrain->crs, "EPSG:2264");
-    EXPECT_EQ(terrain->unit, "US survey foot");
-    options.crs = "EPSG:4326";
-    const auto refused = read_csv(text, options, {});
-    ASSERT_FALSE(refused.ok());
-    EXPECT_EQ(refused.kind(), FaultKind::Unsupported);
-    EXPECT_EQ(refused.faults()[0].code, "CRS_GEOGRAPHIC");
 }
 
 struct BadText {
@@ -121,7 +104,7 @@ TEST(Csv, NamesWhatIsWrongAndWhere) {
     };
     for (const BadText& bad : cases) {
         SCOPED_TRACE(bad.text);
-        const auto terrain = read_csv(bad.text, {}, {});
+        const auto terrain = read_csv(bad.text, {});
         ASSERT_FALSE(terrain.ok());
         const Fault& fault = terrain.faults()[0];
         EXPECT_EQ(fault.code, bad.code);
@@ -131,7 +114,7 @@ TEST(Csv, NamesWhatIsWrongAndWhere) {
 }
 
 TEST(Csv, NamesAllFaultsUpToTheLimit) {
-    const auto terrain = read_csv("0,a,b\n10,0,2\nc,10,3\n1,2\n3,4,5\n", {}, {});
+    const auto terrain = read_csv("0,a,b\n10,0,2\nc,10,3\n1,2\n3,4,5\n", {});
     ASSERT_FALSE(terrain.ok());
     ASSERT_EQ(terrain.faults().size(), 4U);
     EXPECT_EQ(terrain.faults()[0].index, 0U);
@@ -141,28 +124,28 @@ TEST(Csv, NamesAllFaultsUpToTheLimit) {
     std::string many;
     for (int i = 0; i < 1000; ++i)
         many += "a line,of,words\n7,8,b\n";
-    EXPECT_EQ(read_csv("1,2,3\n" + many, {}, {}).faults().size(), kMaxFaults);
+    EXPECT_EQ(read_csv("1,2,3\n" + many, {}).faults().size(), kMaxFaults);
     ReadLimits limits;
     limits.max_faults = 3;
-    EXPECT_EQ(read_csv("1,2,3\n" + many, {}, limits).faults().size(), 3U);
+    EXPECT_EQ(read_csv("1,2,3\n" + many, limits).faults().size(), 3U);
 }
 
 TEST(Csv, HoldsToItsLimits) {
     ReadLimits limits;
     limits.max_vertices = 4;
     const std::string four = "0,0,1\n10,0,2.5\n10,10,-3\n0,10,4\n";
-    EXPECT_TRUE(read_csv(four, {}, limits).ok());
-    const auto vertices = read_csv(four + "5,5,5\n", {}, limits);
+    EXPECT_TRUE(read_csv(four, limits).ok());
+    const auto vertices = read_csv(four + "5,5,5\n", limits);
     ASSERT_FALSE(vertices.ok());
     EXPECT_EQ(vertices.kind(), FaultKind::TooLarge);
     EXPECT_EQ(vertices.faults()[0].code, "TOO_MANY_VERTICES");
     limits.max_triangles = 1;
-    EXPECT_EQ(read_csv(four, {}, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
+    EXPECT_EQ(read_csv(four, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
     // A line of a million separators makes no million fields.
-    const auto wide = read_csv(std::string(1'000'000, ','), {}, {});
+    const auto wide = read_csv(std::string(1'000'000, ','), {});
     ASSERT_FALSE(wide.ok());
     EXPECT_EQ(wide.faults()[0].code, "TOO_MANY_COLUMNS");
-    EXPECT_EQ(read_csv("1" + std::string(1'000'000, ','), {}, {}).faults()[0].code, "WRONG_LENGTH");
+    EXPECT_EQ(read_csv("1" + std::string(1'000'000, ','), {}).faults()[0].code, "WRONG_LENGTH");
 }
 
 TEST(Csv, TellsItsProgressAndStops) {
@@ -175,13 +158,13 @@ TEST(Csv, TellsItsProgressAndStops) {
         told.push_back(share);
         return true;
     };
-    ASSERT_TRUE(read_csv(text, {}, limits).ok());
+    ASSERT_TRUE(read_csv(text, limits).ok());
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GT(told.size(), 12U);
     for (const std::size_t stop : {std::size_t{3}, told.size() - 2}) {
         std::size_t asked = 0;
         limits.progress = [&](double) { return asked++ != stop; };
-        const auto stopped = read_csv(text, {}, limits);
+        const auto stopped = read_csv(text, limits);
         ASSERT_FALSE(stopped.ok());
         EXPECT_EQ(stopped.kind(), FaultKind::Stopped);
         EXPECT_EQ(asked, stop + 1);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <draco/compression/decode.h>
+#include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 
 #include "core/types/mesh_data.hpp"
@@ -24,7 +25,9 @@ struct DecodedPrimitive {
     std::vector<std::array<float, 3>> positions;
     std::vector<std::array<float, 3>> normals;
     std::vector<std::uint32_t> indices;
+    std::vector<std::vector<std::uint16_t>> features;  ///< _FEATURE_ID_0, _FEATURE_ID_1, ...
     nlohmann::json position_accessor;
+    nlohmann::json json;
 };
 
 struct DecodedGlb {
@@ -52,6 +55,57 @@ std::vector<T> elements(const nlohmann::json& gltf, std::string_view bin, std::s
     return values;
 }
 
+/// The attributes _FEATURE_ID_n that the object has, from 0 on without a gap.
+inline std::vector<std::uint32_t> feature_members(const nlohmann::json& attributes) {
+    std::vector<std::uint32_t> members;
+    for (std::size_t n = 0; attributes.contains("_FEATURE_ID_" + std::to_string(n)); ++n)
+        members.push_back(attributes.at("_FEATURE_ID_" + std::to_string(n)));
+    return members;
+}
+
+/// The lower half of each: the upper one is padding.
+inline std::vector<std::uint16_t> lower_halves(const std::vector<std::uint32_t>& words) {
+    std::vector<std::uint16_t> halves;
+    for (const std::uint32_t whole : words) {
+        if (whole > 0xFFFF) throw std::runtime_error("padding that is not empty");
+        halves.push_back(static_cast<std::uint16_t>(whole));
+    }
+    return halves;
+}
+
+/// What EXT_meshopt_compression holds of an accessor's view, decoded by the library.
+template <typename T>
+std::vector<T> meshopt_elements(const nlohmann::json& gltf, std::string_view bin,
+                                std::size_t accessor) {
+    const auto& description = gltf.at("accessors").at(accessor);
+    const auto& view = gltf.at("bufferViews").at(description.at("bufferView").get<std::size_t>());
+    const auto& packed = view.at("extensions").at("EXT_meshopt_compression");
+    const auto& fallback = gltf.at("buffers").at(view.at("buffer").get<std::size_t>());
+    if (!fallback.at("extensions").at("EXT_meshopt_compression").at("fallback").get<bool>() ||
+        view.value("byteOffset", std::size_t{0}) + view.at("byteLength").get<std::size_t>() >
+            fallback.at("byteLength").get<std::size_t>())
+        throw std::runtime_error("a view beyond its fallback");
+    const bool is_triangles = packed.at("mode") == "TRIANGLES";
+    const auto count = packed.at("count").get<std::size_t>();
+    if (packed.at("byteStride") != sizeof(T) || view.at("byteLength") != count * sizeof(T) ||
+        description.at("count") != count)
+        throw std::runtime_error("a compressed view that does not fit its accessor");
+    const std::string_view bytes = bin.substr(packed.at("byteOffset").get<std::size_t>(),
+                                              packed.at("byteLength").get<std::size_t>());
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+    std::vector<T> values(count);
+    const int failure =
+        is_triangles
+            ? meshopt_decodeIndexBuffer(values.data(), count, sizeof(T), data, bytes.size())
+            : meshopt_decodeVertexBuffer(values.data(), count, sizeof(T), data, bytes.size());
+    if (failure != 0) throw std::runtime_error("meshopt cannot decode a view");
+    if (packed.contains("filter")) {
+        if (packed.at("filter") != "EXPONENTIAL") throw std::runtime_error("another filter");
+        meshopt_decodeFilterExp(values.data(), count, sizeof(T));
+    }
+    return values;
+}
+
 inline std::vector<std::array<float, 3>> vectors(const draco::Mesh& mesh, std::uint32_t unique_id) {
     const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(unique_id);
     if (attribute == nullptr) throw std::runtime_error("no such Draco attribute");
@@ -74,6 +128,12 @@ inline void decode_draco(const nlohmann::json& extension, std::string_view bytes
     to.positions = vectors(mesh, attributes.at("POSITION").get<std::uint32_t>());
     if (attributes.contains("NORMAL"))
         to.normals = vectors(mesh, attributes.at("NORMAL").get<std::uint32_t>());
+    for (const std::uint32_t id : feature_members(attributes)) {
+        const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
+        std::vector<std::uint16_t>& values = to.features.emplace_back(mesh.num_points());
+        for (std::uint32_t i = 0; i < mesh.num_points(); ++i)
+            attribute->GetMappedValue(draco::PointIndex(i), &values[i]);
+    }
     for (std::uint32_t i = 0; i < mesh.num_faces(); ++i) {
         for (std::size_t corner = 0; corner < 3; ++corner)
             to.indices.push_back(mesh.face(draco::FaceIndex(i))[corner].value());
@@ -87,7 +147,25 @@ inline DecodedPrimitive decode_primitive(const nlohmann::json& gltf, std::string
     const auto& attributes = primitive.at("attributes");
     const auto position = attributes.at("POSITION").get<std::size_t>();
     to.position_accessor = gltf.at("accessors").at(position);
-    if (primitive.contains("extensions")) {
+    to.json = primitive;
+    const auto& view_of_position = gltf.at("accessors").at(position);
+    const bool is_meshopt = view_of_position.contains("bufferView") &&
+                            gltf.at("bufferViews")
+                                .at(view_of_position.at("bufferView").get<std::size_t>())
+                                .contains("extensions");
+    if (is_meshopt) {
+        to.compressed = true;
+        to.positions = meshopt_elements<std::array<float, 3>>(gltf, bin, position);
+        if (attributes.contains("NORMAL"))
+            to.normals = meshopt_elements<std::array<float, 3>>(gltf, bin, attributes.at("NORMAL"));
+        to.indices = meshopt_elements<std::uint32_t>(gltf, bin, primitive.at("indices"));
+        for (const std::uint32_t accessor : feature_members(attributes))
+            to.features.push_back(
+                lower_halves(meshopt_elements<std::uint32_t>(gltf, bin, accessor)));
+        return to;
+    }
+    if (primitive.contains("extensions") &&
+        primitive.at("extensions").contains("KHR_draco_mesh_compression")) {
         const auto& extension = primitive.at("extensions").at("KHR_draco_mesh_compression");
         const auto& view = gltf.at("bufferViews").at(extension.at("bufferView").get<std::size_t>());
         decode_draco(extension,
@@ -100,6 +178,8 @@ inline DecodedPrimitive decode_primitive(const nlohmann::json& gltf, std::string
     if (attributes.contains("NORMAL"))
         to.normals = elements<std::array<float, 3>>(gltf, bin, attributes.at("NORMAL"));
     to.indices = elements<std::uint32_t>(gltf, bin, primitive.at("indices"));
+    for (const std::uint32_t accessor : feature_members(attributes))
+        to.features.push_back(lower_halves(elements<std::uint32_t>(gltf, bin, accessor)));
     return to;
 }
 

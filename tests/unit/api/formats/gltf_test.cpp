@@ -204,10 +204,12 @@ TEST(WriteGlb, HugeTrianglesGoUncompressedOnTheSameGrid) {
 TEST(WriteGlb, CountsWhatRoundingTurnsOver) {
     core::MeshData mesh;
     // On a grid of 1 m: the first stays; the second's apex, just above its base, rounds to 0 while
-    // the base goes down from 1 to 0; the third rounds onto one line.
-    mesh.vertices = {{0, 20, 0},   {10, 20, 0},   {0, 30, 0},    {0, 0.6, 0},  {10, 0.4, 0},
-                     {6, 0.49, 0}, {20, 10.1, 0}, {30, 10.2, 0}, {25, 10.3, 0}};
-    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+    // the base goes down from 1 to 0; the third rounds onto one line. The fourth is so large that
+    // no finer grid is to be had.
+    mesh.vertices = {{0, 20, 0},    {10, 20, 0},   {0, 30, 0},    {0, 0.6, 0},
+                     {10, 0.4, 0},  {6, 0.49, 0},  {20, 10.1, 0}, {30, 10.2, 0},
+                     {25, 10.3, 0}, {-4e6, 50, 0}, {4e6, 50, 0},  {0, 60, 0}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 11}};
     GltfOptions options;
     options.tolerance = 0.6;
     const GltfResult coarse = written(mesh, options);
@@ -222,9 +224,29 @@ TEST(WriteGlb, CountsWhatRoundingTurnsOver) {
     EXPECT_EQ(extras.at("step").get<double>(), 1.0);
     EXPECT_EQ(extras.at("origin"), nlohmann::json(coarse.origin));
     EXPECT_EQ(extras.at("triangles"), mesh.triangles.size());
-    options.tolerance = 0.005;
-    const GltfResult fine = written(mesh, options);
-    EXPECT_EQ(fine.flipped + fine.collapsed, 0u);
+}
+
+TEST(WriteGlb, TakesAFinerGridWhereThatKeepsTriangles) {
+    core::MeshData mesh;
+    mesh.vertices = {{0, 20, 0},   {10, 20, 0},   {0, 30, 0},    {0, 0.6, 0},  {10, 0.4, 0},
+                     {6, 0.49, 0}, {20, 10.1, 0}, {30, 10.2, 0}, {25, 10.3, 0}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+    for (const Compression compression : {Compression::Draco, Compression::Meshopt}) {
+        GltfOptions options;
+        options.compression = compression;
+        options.tolerance = 0.6;
+        const GltfResult result = written(mesh, options);
+        EXPECT_EQ(result.flipped + result.collapsed, 0u);
+        EXPECT_LT(result.step, 1.0);
+        EXPECT_GE(result.step, 0x1p-4) << "no finer than need be";
+        // One that no grid can help costs nothing.
+        core::MeshData needle = mesh;
+        needle.vertices.push_back({5 + 1e-12, 20, 0});
+        needle.triangles.push_back({0, 1, 9});
+        const GltfResult hopeless = written(needle, options);
+        EXPECT_EQ(hopeless.collapsed, 1u);
+        EXPECT_EQ(hopeless.step, result.step);
+    }
 }
 
 TEST(WriteGlb, PlainFlipsAreThoseOfTheFloats) {

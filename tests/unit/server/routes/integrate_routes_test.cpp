@@ -69,6 +69,30 @@ TEST_F(IntegrateRoutes, TakeOptionsOfPolygonsAndMesh) {
     EXPECT_EQ(glb.body, ask("GET", session + "/mesh.glb?compression=none").body);
 }
 
+TEST_F(IntegrateRoutes, SendRegionsAndPartsOfTheMesh) {
+    const auto options = [](const char* text) { return Part{"options", "application/json", text}; };
+    const Response gltf =
+        once({options(R"({"regions": true, "bbox": "0,0,3,3", "compression": "meshopt"})"),
+              polygons, terrain},
+             {{"accept", "model/gltf+json"}});
+    ASSERT_EQ(gltf.status, 200) << gltf.body;
+    EXPECT_EQ(gltf.content_type, "model/gltf+json");
+    const std::string session = make_session();
+    post(session + "/polygons", kParcel);
+    EXPECT_EQ(
+        gltf.body,
+        ask("GET", session + "/mesh.gltf?regions=true&bbox=0,0,3,3&compression=meshopt").body);
+    const std::vector<NameValue> as_glb{{"accept", "model/gltf-binary"}};
+    const Response nothing =
+        once({options(R"({"bbox": "20,20,30,30"})"), polygons, terrain}, as_glb);
+    EXPECT_EQ(told(nothing), "NOTHING_WITHIN");
+    EXPECT_EQ(places(nothing), "/options/bbox");
+    const Response dry =
+        once({options(R"({"regions": true, "dry_run": true})"), polygons, terrain}, as_glb);
+    EXPECT_EQ(told(dry), "CONTRADICTION");
+    EXPECT_EQ(places(dry), "/options/regions");
+}
+
 TEST_F(IntegrateRoutes, SayWhichPartIsAtFault) {
     const Response bad =
         once({{"terrain", "application/json", R"({"mesh": {"vertices": 3}})"},

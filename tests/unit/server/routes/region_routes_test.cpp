@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "server/regions.hpp"
@@ -72,6 +73,70 @@ TEST_F(RegionRoutes, TellTheBorderWithTheRegionOnItsLeft) {
             (a[0].get<double>() * b[1].get<double>() - b[0].get<double>() * a[1].get<double>()) / 2;
     }
     EXPECT_NEAR(area, 16.0, 1e-12);
+}
+
+TEST_F(RegionRoutes, AreFeaturesForGisPrograms) {
+    const Response made = post(session + "/polygons", R"({"type": "Feature", "properties":
+        {"name": "Pad", "plan_area": "mine", "use": "parking"}, "geometry": {"type": "Polygon",
+        "coordinates": [[[1,1],[6,1],[6,6],[1,6],[1,1]],[[2,2],[2,3],[3,3],[3,2],[2,2]]]}})");
+    ASSERT_EQ(made.status, 200) << made.body;
+    cut("[[4,2],[20,2]]", "LineString");
+    cut("[[[8,8],[12,8],[12,12],[8,12],[8,8]]]");  // half of it off the mesh
+    const Response all = ask("GET", session + "/regions", {{"accept", "application/geo+json"}});
+    ASSERT_EQ(all.status, 200);
+    EXPECT_EQ(all.content_type, "application/geo+json");
+    EXPECT_NE(header(all, "ETag"), header(ask("GET", session + "/regions"), "ETag"));
+    const json list = json::parse(all.body);
+    EXPECT_EQ(list["crs"]["properties"]["name"], "EPSG:32616");
+    ASSERT_EQ(list["features"].size(), 2U);
+    const json& first = list["features"][0];
+    EXPECT_EQ(first["properties"]["id"], "p1");
+    EXPECT_EQ(first["properties"]["name"], "Pad");
+    EXPECT_EQ(first["properties"]["use"], "parking");
+    EXPECT_EQ(first["properties"]["plan_area_2"], "mine");
+    EXPECT_EQ(first["properties"]["plan_area"], region("p1")["plan_area"]);
+    EXPECT_EQ(first["properties"]["triangles"], region("p1")["triangles"].size());
+    const json& polygons = first["geometry"]["coordinates"];
+    ASSERT_EQ(polygons.size(), 1U);
+    ASSERT_EQ(polygons[0].size(), 2U) << "with its hole";
+    EXPECT_EQ(polygons[0][0].front(), polygons[0][0].back());
+    EXPECT_EQ(polygons[0][0][0].size(), 3U);
+    const json& half = list["features"][1];
+    EXPECT_EQ(half["geometry"]["type"], "MultiPolygon") << "what of it lies on the mesh";
+    EXPECT_NEAR(half["properties"]["plan_area"].get<double>(), 4.0, 1e-12);
+    const json one =
+        json::parse(ask("GET", session + "/regions/p3", {{"accept", "application/geo+json"}}).body);
+    EXPECT_EQ(one["geometry"], half["geometry"]);
+}
+
+class ConstraintRoutes : public RegionRoutes {};
+
+TEST_F(ConstraintRoutes, ChainTheEdgesByTheirPolygons) {
+    EXPECT_EQ(json::parse(ask("GET", session + "/constraints").body)["features"], json::array());
+    cut("[[[1,1],[6,1],[6,6],[1,6],[1,1]]]");
+    cut("[[[6,2],[9,2],[9,5],[6,5],[6,2]]]");  // shares [2,5] of the side x = 6
+    const Response all = ask("GET", session + "/constraints");
+    EXPECT_EQ(all.content_type, "application/geo+json");
+    const json list = json::parse(all.body);
+    std::map<json, double> lengths;
+    for (const json& feature : list["features"]) {
+        EXPECT_EQ(feature["properties"]["locked"], false);
+        lengths[feature["properties"]["polygons"]] += feature["properties"]["length"].get<double>();
+    }
+    ASSERT_EQ(lengths.size(), 3U);
+    EXPECT_NEAR(lengths[json::array({"p1"})], 17.0, 1e-12);
+    EXPECT_NEAR(lengths[json::array({"p2"})], 9.0, 1e-12);
+    EXPECT_NEAR(lengths[json::array({"p1", "p2"})], 3.0, 1e-12);
+    json pages = json::array();
+    std::string next = session + "/constraints?limit=1";
+    while (!next.empty()) {
+        const Response page = ask("GET", next);
+        ASSERT_EQ(page.status, 200);
+        pages.push_back(json::parse(page.body)["features"][0]);
+        const std::string link = header(page, "Link");
+        next = link.empty() ? "" : link.substr(1, link.find('>') - 1);
+    }
+    EXPECT_EQ(pages, list["features"]);
 }
 
 TEST_F(RegionRoutes, TellWhatOthersContain) {
