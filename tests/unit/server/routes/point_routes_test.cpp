@@ -25,7 +25,7 @@ TEST_F(PointRoutes, TakePointsAndNameThoseAtFault) {
     EXPECT_EQ(session["triangles"], 4);
     const std::string path = header(made, "Location");
     EXPECT_EQ(post(path + "/polygons", kParcel).status, 200);
-    EXPECT_EQ(json::parse(ask("GET", path + "/mesh?version=1").body)["vertices"][4],
+    EXPECT_EQ(json::parse(ask("GET", path + "/mesh.json?version=1").body)["vertices"][4],
               json::parse("[4.0, 5.0, 6.0]"));
 
     const Response refused = post(
