@@ -109,7 +109,7 @@ TEST(HardCase, SeveralComponents) {
         const MeshData more = grid(2, 2, test::Diagonals::Falling);
         const auto base = static_cast<std::uint32_t>(data.vertices.size());
         for (const Point3& v : more.vertices)
-            data.vertices.push_back({v.x + shift, v.y, v.z});
+            data.vertices.push_back({v.x + shift, v.y, std::sin(v.x + shift) + v.y * v.y});
         for (const auto& t : more.triangles)
             data.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
     }
