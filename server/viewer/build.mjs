@@ -10,7 +10,9 @@ import {build} from 'esbuild';
 const out = process.argv[2] ?? '../../build/viewer';
 const three = 'node_modules/three';
 
-for (const name of readdirSync(out)) rmSync(join(out, name), {recursive: true});
+// Of an earlier build; nothing else that may stand there.
+for (const name of readdirSync(out))
+  if (/^(index\.html|(main|page|draco|notices)-[0-9a-f]{12}\.\w+)$/.test(name)) rmSync(join(out, name));
 
 /** Writes a file whose name tells its content; its address on the page. */
 function put(stem, ending, content) {

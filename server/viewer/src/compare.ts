@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mesh as it was: fetched as GLB with Draco, since it is only looked at.
-import {BufferGeometry, type CanvasTexture, Group, LineSegments, LineBasicMaterial, Mesh as Drawn, Vector3} from 'three';
+import {type BufferGeometry, type Camera, type CanvasTexture, Group, Mesh as Drawn, Vector3} from 'three';
 import {DRACOLoader} from 'three/examples/jsm/loaders/DRACOLoader.js';
 import {GLTFLoader} from 'three/examples/jsm/loaders/GLTFLoader.js';
 import {base, type Call, send} from './api';
 import type {App} from './app';
+import {Facets} from './facets';
 import {GroundIndex} from './ground_index';
 import {Mesh} from './mesh';
 import {groundMaterial} from './shaders';
@@ -18,7 +19,6 @@ export class Compare {
   part = 0.5;
   group: Group | null = null;
   readonly material;
-  private readonly wires = new LineBasicMaterial({color: '#22302a', transparent: true, opacity: 0.42});
   private readonly loader = new GLTFLoader();
   private index: GroundIndex | null = null;
 
@@ -58,42 +58,45 @@ export class Compare {
       const mesh = new Drawn(geometry, this.material);
       mesh.position.set(shift.x - origin[0], shift.y - origin[1], shift.z - origin[2]);
       mesh.frustumCulled = false;
-      const wires = new LineSegments(wireGeometry(geometry), this.wires);
-      wires.position.copy(mesh.position);
-      wires.frustumCulled = false;
-      wires.name = 'wires';
-      group.add(mesh, wires);
+      const facets = new Facets();
+      facets.position.copy(mesh.position);
+      group.add(mesh, facets);
     });
     return group;
+  }
+
+  showFacets(on: boolean, camera: Camera) {
+    const children = this.group?.children ?? [];
+    for (let i = 0; i + 1 < children.length; i += 2) {
+      const {geometry} = children[i] as Drawn;
+      const facets = children[i + 1] as Facets;
+      facets.visible = false;
+      if (on) facets.update(geometry, geometry.getAttribute('position').count, geometry.getIndex()!.count / 3, camera);
+    }
   }
 
   /** To ask it for elevations. */
   async ground(): Promise<GroundIndex | null> {
     if (this.index || !this.group) return this.index;
-    const drawn = this.group.children[0] as Drawn;
     const {origin} = this.app.mesh;
-    const from = drawn.geometry.getAttribute('position');
+    // A mesh that is fine over a wide ground comes in several parts.
+    const parts = this.group.children.filter((child): child is Drawn => child instanceof Drawn);
     const mesh = new Mesh();
-    mesh.positions = new Float64Array(3 * from.count);
-    for (let i = 0; i < from.count; ++i) {
-      mesh.positions[3 * i] = from.getX(i) + drawn.position.x + origin[0];
-      mesh.positions[3 * i + 1] = from.getY(i) + drawn.position.y + origin[1];
-      mesh.positions[3 * i + 2] = from.getZ(i) + drawn.position.z + origin[2];
+    mesh.positions = new Float64Array(parts.reduce((sum, part) => sum + 3 * part.geometry.getAttribute('position').count, 0));
+    mesh.corners = new Uint32Array(parts.reduce((sum, part) => sum + part.geometry.getIndex()!.count, 0));
+    for (const {geometry, position} of parts) {
+      const from = geometry.getAttribute('position');
+      const index = geometry.getIndex()!;
+      for (let i = 0; i < index.count; ++i) mesh.corners[3 * mesh.triangleCount + i] = index.getX(i) + mesh.vertexCount;
+      for (let i = 0, at = 3 * mesh.vertexCount; i < from.count; ++i) {
+        mesh.positions[at++] = from.getX(i) + position.x + origin[0];
+        mesh.positions[at++] = from.getY(i) + position.y + origin[1];
+        mesh.positions[at++] = from.getZ(i) + position.z + origin[2];
+      }
+      mesh.vertexCount += from.count;
+      mesh.triangleCount += index.count / 3;
     }
-    mesh.corners = new Uint32Array(drawn.geometry.getIndex()!.array);
-    [mesh.vertexCount, mesh.triangleCount] = [from.count, mesh.corners.length / 3];
     this.index = new GroundIndex(mesh);
     return this.index;
   }
-}
-
-function wireGeometry(geometry: BufferGeometry): BufferGeometry {
-  const corners = geometry.getIndex()!.array;
-  const out = new Uint32Array(2 * corners.length);
-  for (let i = 0; i < corners.length; i += 3) out.set([corners[i], corners[i + 1], corners[i + 1], corners[i + 2], corners[i + 2], corners[i]], 2 * i);
-  const wires = new BufferGeometry();
-  wires.setAttribute('position', geometry.getAttribute('position'));
-  wires.setIndex(Array.from([0, 0]));
-  wires.setIndex(new (geometry.getIndex()!.constructor as any)(out, 1));
-  return wires;
 }

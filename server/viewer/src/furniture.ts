@@ -69,7 +69,7 @@ export function buildLooks(app: App, view: View, overlay: Overlay, compare: Comp
     });
   }, {'aria-pressed': 'false', title: 'Compare with an earlier version'});
   byId('looks').append(
-    toggle('Facets', 'The edges of all triangles', () => view.terrain?.wireframe ?? false, (on) => { view.terrain?.setWireframe(on); view.look(); }),
+    toggle('Facets', 'The edges of all triangles', () => view.terrain?.wireframe ?? false, (on) => { if (view.terrain) view.terrain.wireframe = on; view.look(); }),
     toggle('Constraints', 'The edges that polygons and lines have made', () => regions.showLines, (on) => { regions.showLines = on; app.tell('look'); }),
     toggle('Regions', 'Colours, patterns and labels', () => regions.showFills, (on) => { regions.showFills = overlay.showLabels = on; app.tell('look'); }),
     toggle('Contours', 'Lines of equal elevation', () => view.contours, (on) => { view.contours = on; view.look(); }),

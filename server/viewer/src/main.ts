@@ -69,9 +69,12 @@ buildTabs(app, [
   ['history', 'History', buildHistory(app, compare)],
 ]);
 view.follow(pointer);
-app.on(['draft'], () => {
-  byId('hint').textContent = draft.drawing ? 'Click to set corners. Enter finishes, Backspace takes back, Escape cancels.' : '';
-});
+let hint = '';
+const showHint = () => {
+  byId('hint').textContent = draft.drawing ? 'Click to set corners. Enter finishes, Backspace takes back, Escape cancels.' : hint;
+};
+view.hint = (text) => { hint = text; showHint(); };
+app.on(['draft'], showHint);
 app.on(['progress'], () => { document.body.classList.toggle('busy', app.busy > 0); });
 pointer.onFinish = () => {
   void app.attempt(() => (draft.kind === 'Profile' ? profile.ask([...draft.points]) : draft.dryRun()));

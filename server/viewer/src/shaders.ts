@@ -39,7 +39,7 @@ float light(vec3 n) {
 /** The ground: tinted by elevation, lit by facets, with contour lines where wanted. */
 export function groundMaterial(ramp: CanvasTexture) {
   return new ShaderMaterial({
-    side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 2,
+    side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 8,
     uniforms: {ramp: {value: ramp}, range: {value: new Vector2(0, 1)}, exaggeration: {value: 1}, contour: {value: 0}, grey: {value: 0}},
     vertexShader: VERTEX,
     fragmentShader: `
@@ -69,7 +69,7 @@ export const PATTERNS = ['rising', 'falling', 'upright', 'level', 'grid', 'dots'
 
 export function regionMaterial(colour: string, pattern: number) {
   return new ShaderMaterial({
-    side: DoubleSide, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 0.5, polygonOffsetUnits: 1,
+    side: DoubleSide, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4,
     uniforms: {colour: {value: new Color(colour)}, pattern: {value: pattern % PATTERNS.length}, strength: {value: 0.3}, pixel: {value: 1}, exaggeration: {value: 1}},
     vertexShader: VERTEX,
     fragmentShader: `

@@ -6,6 +6,13 @@ import {MapControls} from 'three/examples/jsm/controls/MapControls.js';
 const SLOW_MS = 60;
 const REST_MS = 180;
 
+/** Whether drawing is not the processor's work, for which smooth edges cost too much. */
+function hasGraphicsCard(): boolean {
+  const context = document.createElement('canvas').getContext('webgl2', {failIfMajorPerformanceCaveat: true});
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return context !== null;
+}
+
 /**
  * The canvas: one scene in the session's axes (z up, relative to its origin), drawn when something
  * has changed and not otherwise.
@@ -21,6 +28,8 @@ export class Stage {
   readonly onFrame: (() => void)[] = [];
   /** Told whether less should be drawn because the view moves and frames are slow. */
   onEconomy: (economy: boolean) => void = () => {};
+  /** Called when the view has come to rest. */
+  onRest: () => void = () => {};
   /** The ground as it was, on the left of the part `swipe`; null: no comparison. */
   compare: {before: Object3D; now: Object3D[]; part: number} | null = null;
   frames = 0;
@@ -28,12 +37,13 @@ export class Stage {
   private moving = false;
   private slow = 0;
   private lastFrame = 0;
+  private lastTook = 0;
   private restTimer = 0;
   private economy = false;
   private readonly size = new Vector2();
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({canvas, antialias: true, powerPreference: 'high-performance'});
+    this.renderer = new WebGLRenderer({canvas, antialias: hasGraphicsCard(), powerPreference: 'high-performance'});
     this.scene.background = new Color('#e9edea');
     this.scene.add(this.world);
     this.camera.up.set(0, 0, 1);
@@ -63,10 +73,12 @@ export class Stage {
   private moved() {
     if (!this.moving) { this.moving = true; this.lastFrame = 0; this.slow = 0; }
     clearTimeout(this.restTimer);
+    const wait = Math.max(REST_MS, 3 * this.lastTook);
     this.restTimer = window.setTimeout(() => {
       this.moving = false;
       this.setEconomy(false);
-    }, REST_MS);
+      this.onRest();
+    }, wait);
     this.invalidate();
   }
 
@@ -93,7 +105,8 @@ export class Stage {
 
   private draw(now: number) {
     if (this.moving && this.lastFrame) {
-      this.slow = now - this.lastFrame > SLOW_MS ? this.slow + 1 : 0;
+      this.lastTook = Math.min(now - this.lastFrame, 1000);
+      this.slow = this.lastTook > SLOW_MS ? this.slow + 1 : 0;
       if (this.slow >= 2) this.setEconomy(true);
     }
     this.lastFrame = now;
@@ -129,11 +142,22 @@ export class Stage {
   /** Looks at a box of the scene from the south, from above. `steep`: straight down. */
   fit(center: Vector3, width: number, height: number, steep = false) {
     this.reach = Math.max(width, height, 1);
-    const across = Math.max(width / this.camera.aspect, height * 0.9, 1e-3);
-    const distance = (across / 2 / Math.tan((this.camera.fov * Math.PI) / 360)) * 1.12;
+    const across = Math.max((width / this.camera.aspect) * 1.05, height * (steep ? 1 : 1.02), 1e-3);
+    const distance = (across / 2 / Math.tan((this.camera.fov * Math.PI) / 360)) * 1.1;
     this.controls.target.copy(center);
-    const direction = steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.12, -0.66, 0.74);
-    this.camera.position.copy(center).addScaledVector(direction.normalize(), distance);
+    this.camera.near = this.reach / 1000;
+    this.camera.far = this.reach * 100;
+    this.camera.updateProjectionMatrix();
+    const direction = steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.08, -0.62, 0.78);
+    direction.normalize();
+    // Back until the corners of the box are within the frame, below what stands on its upper margin.
+    for (let back = distance * 0.7, tries = 0; tries < 30; ++tries, back *= 1.05) {
+      this.camera.position.copy(center).addScaledVector(direction, back);
+      this.camera.lookAt(center);
+      this.camera.updateMatrixWorld();
+      const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => new Vector3(x * width, y * height, 0).multiplyScalar(0.5).add(center).project(this.camera)));
+      if (corners.every((at) => Math.abs(at.x) < 0.96 && at.y > -0.97 && at.y < 0.86)) break;
+    }
     this.controls.maxDistance = distance * 6;
     this.controls.minDistance = this.reach * 1e-4;
     this.controls.update();

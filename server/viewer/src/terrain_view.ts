@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import {BufferAttribute, BufferGeometry, type CanvasTexture, LineBasicMaterial, LineSegments, Mesh as Drawn} from 'three';
+import {BufferAttribute, BufferGeometry, type Camera, type CanvasTexture, Mesh as Drawn} from 'three';
 import type {Delta} from './delta';
 import {coarseIndex} from './coarse';
+import {Facets} from './facets';
 import type {Mesh} from './mesh';
 import {groundMaterial} from './shaders';
 
@@ -9,7 +10,7 @@ import {groundMaterial} from './shaders';
 export class TerrainView {
   readonly material;
   readonly ground: Drawn;
-  readonly wires: LineSegments;
+  readonly facets = new Facets();
   /** What is drawn instead while the view moves and frames are slow. */
   private readonly coarse: Drawn;
   private coarseIsCurrent = false;
@@ -20,14 +21,12 @@ export class TerrainView {
     this.material = groundMaterial(ramp);
     this.ground = new Drawn(new BufferGeometry(), this.material);
     this.coarse = new Drawn(new BufferGeometry(), this.material);
-    this.wires = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: '#22302a', transparent: true, opacity: 0.42}));
     for (const object of this.objects) object.frustumCulled = false;
-    this.coarse.visible = this.wires.visible = false;
-    this.wires.renderOrder = 1;
+    this.coarse.visible = false;
   }
 
   get objects() {
-    return [this.ground, this.coarse, this.wires];
+    return [this.ground, this.coarse, this.facets];
   }
   get position() {
     return this.ground.geometry.getAttribute('position') as BufferAttribute;
@@ -55,13 +54,12 @@ export class TerrainView {
     }
     geometry.setDrawRange(0, 3 * this.mesh.triangleCount);
     this.coarseIsCurrent = false;
-    if (this.wires.geometry.getIndex()) this.writeWires(delta);
   }
 
-  setWireframe(on: boolean) {
-    this.wireframe = on;
-    if (on && !this.wires.geometry.getIndex()) this.writeWires(null);
-    this.show();
+  /** Shows the facets as they are seen now, or none. */
+  showFacets(camera: Camera) {
+    if (this.wireframe) this.facets.update(this.ground.geometry, this.mesh.vertexCount, this.mesh.triangleCount, camera);
+    else this.facets.visible = false;
   }
 
   setEconomy(economy: boolean) {
@@ -76,26 +74,7 @@ export class TerrainView {
   private show() {
     this.ground.visible = !this.economy;
     this.coarse.visible = this.economy;
-    this.wires.visible = this.wireframe && !this.economy;
-  }
-
-  /** Three edges for each triangle slot, so that they are patched as the triangles are. */
-  private writeWires(delta: Delta | null) {
-    const {corners, triangleCount} = this.mesh;
-    let index = this.wires.geometry.getIndex();
-    const isNew = index?.array.length !== 2 * corners.length;
-    if (!index || isNew) index = new BufferAttribute(new Uint32Array(2 * corners.length), 1);
-    const out = index.array as Uint32Array;
-    const runs = isNew || !delta || delta.whole ? [{first: 0, count: triangleCount}] : delta.triangleRuns;
-    for (const {first, count} of runs) {
-      for (let t = first; t < first + count; ++t) {
-        const [a, b, c] = [corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]];
-        out.set([a, b, b, c, c, a], 6 * t);
-      }
-      if (!isNew) index.addUpdateRange(6 * first, 6 * count);
-    }
-    if (isNew) this.wires.geometry.setIndex(index); else index.needsUpdate = true;
-    this.wires.geometry.setDrawRange(0, 6 * triangleCount);
+    if (this.economy) this.facets.visible = false;
   }
 
   dispose() {

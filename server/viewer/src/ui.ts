@@ -63,7 +63,10 @@ export function number(value: number, digits = 0): string {
 export function brief(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return '0';
-  if (size < 1e-3 || size >= 1e12) return value.toExponential(1).replace('e', ' × 10^').replace('^-', '^−').replace('^+', '^');
+  if (size < 1e-3 || size >= 1e12) {
+    const [digits, power] = value.toExponential(1).split('e');
+    return `${digits}·10${[...power.replace('+', '')].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)])).join('')}`;
+  }
   return number(value, size >= 1000 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
 }
 

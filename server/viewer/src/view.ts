@@ -22,6 +22,8 @@ export class View {
   exaggeration = 1;
   contours = false;
   compare: Compare | null = null;
+  /** Shows a line above the map; set by the page. */
+  hint: (text: string) => void = () => {};
   private readonly sketch = new Lines({colour: '#c2410c', width: 2.6, above: true});
   private readonly band = new Lines({colour: '#c2410c', width: 1.6, above: true});
   private readonly section = new Lines({colour: '#5b21b6', width: 2.6, above: true});
@@ -31,6 +33,7 @@ export class View {
   constructor(private readonly app: App, private readonly draft: Draft, readonly stage: Stage) {
     this.regions = new RegionsView(app, () => { stage.invalidate(); });
     stage.world.add(this.regions.group, this.sketch, this.band, this.section, this.under);
+    stage.onRest = () => { this.showFacets(); };
     stage.onEconomy = (economy) => { this.terrain?.setEconomy(economy); };
     app.show = async (delta, isNew) => {
       if (isNew) {
@@ -40,7 +43,7 @@ export class View {
         const wireframe = this.terrain?.wireframe ?? false;
         this.terrain = new TerrainView(app.mesh, this.ramp);
         this.terrain.sync(delta);
-        this.terrain.setWireframe(wireframe);
+        this.terrain.wireframe = wireframe;
         stage.world.add(...this.terrain.objects);
         this.range = app.mesh.range();
         this.look();
@@ -115,7 +118,7 @@ export class View {
     this.stage.world.scale.z = this.exaggeration;
     this.regions.setExaggeration(this.exaggeration);
     this.showCompare();
-    this.stage.invalidate();
+    this.showFacets();
     this.app.tell('look');
   }
 
@@ -125,11 +128,21 @@ export class View {
     if (stage.compare && stage.compare.before !== compare.group) stage.compare.before.removeFromParent();
     if (compare.swipe && compare.group) {
       stage.world.add(compare.group);
-      for (const child of compare.group.children) if (child.name === 'wires') child.visible = terrain.wireframe;
       stage.compare = {before: compare.group, now: [...terrain.objects, this.regions.group], part: compare.part};
     } else {
       stage.compare = null;
     }
+    stage.invalidate();
+  }
+
+  /** The edges of what is in view. */
+  showFacets() {
+    const {terrain, compare, stage} = this;
+    if (!terrain) return;
+    terrain.showFacets(stage.camera);
+    compare?.showFacets(terrain.wireframe && compare.swipe, stage.camera);
+    this.hint(terrain.wireframe && terrain.facets.inView > 0 && !terrain.facets.visible
+      ? `Zoom in to see the facets: ${terrain.facets.inView.toLocaleString('en')} are in view` : '');
     stage.invalidate();
   }
 

@@ -55,7 +55,7 @@ export function pointTable(draft: Draft): HTMLElement {
 
 export function buildDraw(app: App, draft: Draft, take: (file: File) => void): HTMLElement {
   const kinds: [Kind, HTMLButtonElement][] = (['Polygon', 'LineString'] as Kind[]).map((kind) => [kind,
-    button(kind === 'Polygon' ? 'Draw polygon' : 'Draw line', () => { draft.begin(kind); }, {'aria-pressed': 'false'})]);
+    button(kind === 'Polygon' ? 'Polygon' : 'Line', () => { draft.begin(kind); }, {'aria-pressed': 'false', 'aria-label': kind === 'Polygon' ? 'Draw polygon' : 'Draw line', id: `draw-${kind}`})]);
   const file = h('input', {type: 'file', class: 'unseen', id: 'geojson', 'aria-label': 'GeoJSON file', accept: '.geojson,.json', onchange: () => {
     if (file.files?.[0]) take(file.files[0]);
     file.value = '';
@@ -88,7 +88,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
     points.hidden = !isOurs || draft.imported !== null;
   });
   app.on(['session'], () => { draft.changed(); });
-  return h('div', {}, h('div', {class: 'buttons'}, ...kinds.map(([, element]) => element), button('GeoJSON…', () => { file.click(); }), file),
+  return h('div', {}, h('div', {class: 'buttons'}, h('span', {class: 'soft'}, 'Draw'), ...kinds.map(([, element]) => element), h('span', {class: 'soft'}, 'or'), button('GeoJSON…', () => { file.click(); }), file),
     paste, state, points, h('div', {class: 'buttons'}, finish, cancel), buildOptions(app, draft),
     h('div', {class: 'buttons go'}, dry, go), buildReport(app, draft));
 }
