@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {BufferAttribute, BufferGeometry, type Camera, LineBasicMaterial, LineSegments, Matrix4} from 'three';
+import {BufferAttribute, BufferGeometry, type Camera, LineBasicMaterial, LineSegments, Matrix4, Sphere} from 'three';
 
 /** More than these in view are a grey carpet, and slow. */
 const MOST = 60_000;
@@ -44,6 +44,7 @@ export class Facets extends LineSegments {
     this.geometry.dispose();
     this.geometry = new BufferGeometry();
     this.geometry.setAttribute('position', position);
+    this.geometry.boundingSphere = new Sphere();
     if (!this.visible) return;
     const both = found.length < BOTH_SIDES;
     const ends = new Uint32Array(6 * found.length);

@@ -6,7 +6,7 @@ const SPARE = 1.2;
 
 function withRoom<T extends Float64Array | Float32Array | Uint32Array>(old: T, used: number, needed: number): T {
   if (needed <= old.length) return old;
-  const grown = new (old.constructor as new (length: number) => T)(Math.ceil(needed * SPARE));
+  const grown = new (old.constructor as new (length: number) => T)(3 * Math.ceil((needed * SPARE) / 3));
   grown.set(old.subarray(0, used));
   return grown;
 }

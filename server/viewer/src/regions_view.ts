@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {BufferAttribute, BufferGeometry, Group, Mesh as Drawn, type ShaderMaterial} from 'three';
+import {BufferAttribute, BufferGeometry, Group, Mesh as Drawn, type ShaderMaterial, Sphere} from 'three';
 import type {App} from './app';
 import {Lines, segmentsOf} from './lines';
 import {PATTERNS, regionMaterial} from './shaders';
@@ -78,6 +78,7 @@ export class RegionsView {
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', terrain.position);
       geometry.setIndex(new BufferAttribute(index, 1));
+      geometry.boundingSphere = new Sphere();
       const fill = new Drawn(geometry, regionMaterial(look.colour, look.pattern));
       fill.material.uniforms.exaggeration.value = exaggeration;
       fill.material.uniforms.pixel.value = pixel;

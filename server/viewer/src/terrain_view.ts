@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import {BufferAttribute, BufferGeometry, type Camera, type CanvasTexture, Mesh as Drawn} from 'three';
+import {BufferAttribute, BufferGeometry, type Camera, type CanvasTexture, Mesh as Drawn, Sphere} from 'three';
 import type {Delta} from './delta';
 import {coarseIndex} from './coarse';
 import {Facets} from './facets';
@@ -21,7 +21,11 @@ export class TerrainView {
     this.material = groundMaterial(ramp);
     this.ground = new Drawn(new BufferGeometry(), this.material);
     this.coarse = new Drawn(new BufferGeometry(), this.material);
-    for (const object of this.objects) object.frustumCulled = false;
+    for (const object of this.objects) {
+      object.frustumCulled = false;
+      // Known, so that nobody goes over a million vertices to sort a handful of objects.
+      object.geometry.boundingSphere = new Sphere();
+    }
     this.coarse.visible = false;
   }
 

@@ -56,7 +56,7 @@ export function pointTable(draft: Draft): HTMLElement {
 export function buildDraw(app: App, draft: Draft, take: (file: File) => void): HTMLElement {
   const kinds: [Kind, HTMLButtonElement][] = (['Polygon', 'LineString'] as Kind[]).map((kind) => [kind,
     button(kind === 'Polygon' ? 'Polygon' : 'Line', () => { draft.begin(kind); }, {'aria-pressed': 'false', 'aria-label': kind === 'Polygon' ? 'Draw polygon' : 'Draw line', id: `draw-${kind}`})]);
-  const file = h('input', {type: 'file', class: 'unseen', id: 'geojson', 'aria-label': 'GeoJSON file', accept: '.geojson,.json', onchange: () => {
+  const file = h('input', {type: 'file', hidden: true, id: 'geojson', accept: '.geojson,.json', onchange: () => {
     if (file.files?.[0]) take(file.files[0]);
     file.value = '';
   }});

@@ -68,7 +68,7 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
   const row = (element: HTMLElement, when: () => boolean) => { rows.push([element, when]); return element; };
   const text = (name: keyof Wish, attributes = {}) => input(wish[name], (value) => { (wish as any)[name] = value; }, attributes);
   const lifts = () => wish.operation === 'set' || wish.operation === 'offset';
-  const level = text('elevation');
+  const level = text('elevation', {id: 'level'});
   const width = field('Width', text('width'));
   const form = h('div', {class: 'fields'},
     field('Do', select([['set', 'set the ground'], ['offset', 'raise or lower'], ['smooth', 'smooth'], ['remove', 'cut a hole'], ['keep', 'keep only the inside']],

@@ -5,7 +5,7 @@ import {TERRAIN_ENDINGS, type Upload} from '../upload';
 import {areaText, brief, button, bytesText, byId, figures, h, number, shortUnit} from '../ui';
 
 export function buildTerrain(app: App, upload: Upload, take: (file: File) => void): HTMLElement {
-  const file = h('input', {type: 'file', class: 'unseen', id: 'file', accept: `${TERRAIN_ENDINGS},.geojson`, onchange: () => {
+  const file = h('input', {type: 'file', hidden: true, id: 'file', accept: `${TERRAIN_ENDINGS},.geojson`, onchange: () => {
     if (file.files?.[0]) take(file.files[0]);
     file.value = '';
   }});
