@@ -150,7 +150,7 @@ export function curlLine(call: Call): string {
   if (body === undefined && call.method === 'POST') words.push('-d', "''");
   else if (call.method === 'DELETE' || (call.method === 'PUT' && typeof body === 'string')) words.push('-X', call.method);
   for (const [name, value] of Object.entries(call.headers ?? {})) words.push('-H', quote(`${name}: ${value}`));
-  if (typeof body === 'string') words.push(body.length > LONGEST ? `-d ${quote('@' + (call.file ?? 'shape.geojson'))}` : `-d ${quote(body)}`);
+  if (typeof body === 'string') words.push('-d', quote(call.file || body.length > LONGEST ? `@${call.file ?? 'shape.geojson'}` : body));
   else if (body) words.push(call.method === 'PUT' ? '-T' : '--data-binary', quote((call.method === 'PUT' ? '' : '@') + (call.file ?? 'terrain.tif')));
   if (call.headers?.Accept === DELTA) words.push('-o', 'edit.delta');
   else if (/mesh\.glb$/.test(call.path)) words.push('-o', 'mesh.glb');

@@ -17,7 +17,7 @@ export class Draft {
   kind: Kind = 'Polygon';
   drawing = false;
   points: Position[] = [];
-  /** GeoJSON from a file or pasted, sent as it came. */
+  /** GeoJSON from a file, or pasted and then without a name. */
   imported: {name: string; text: string; value: any} | null = null;
   options = {...DEFAULTS};
   promised: Report | null = null;
@@ -80,7 +80,7 @@ export class Draft {
   take(name: string, text: string) {
     const value = JSON.parse(text);
     this.cancel();
-    this.imported = {name, text, value};
+    this.imported = {name, text: JSON.stringify(value), value};
     this.kind = 'Polygon';
     this.app.tell('draft');
   }
@@ -106,7 +106,7 @@ export class Draft {
     if (dryRun) query.dry_run = 'true';
     return {
       method: 'POST', path: this.app.path('/polygons'), query, headers: {'Content-Type': GEOJSON},
-      body: this.imported ? this.imported.text : JSON.stringify(this.geometry), file: this.imported?.name,
+      body: this.imported ? this.imported.text : JSON.stringify(this.geometry), file: this.imported?.name || undefined,
     };
   }
 

@@ -110,7 +110,7 @@ export class Pointer {
   private anywhere(event: KeyboardEvent) {
     const target = event.target as HTMLElement;
     if (target.closest('input, textarea, select')) return;
-    if (event.key === 'z' && (event.ctrlKey || event.metaKey)) {
+    if (event.key.toLowerCase() === 'z' && (event.ctrlKey || event.metaKey)) {
       event.preventDefault();
       byId<HTMLButtonElement>(event.shiftKey ? 'redo' : 'undo').click();
       return;

@@ -63,7 +63,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
   const pasted = h('textarea', {rows: 4, 'aria-label': 'GeoJSON text', placeholder: '{"type": "Polygon", "coordinates": …}', spellcheck: 'false'});
   const paste = h('details', {}, h('summary', {}, 'Paste GeoJSON'), pasted, button('Take it', () => {
     void app.attempt(async () => {
-      try { draft.take('pasted.geojson', pasted.value); } catch { throw new Error('This is not JSON.'); }
+      try { draft.take('', pasted.value); } catch { throw new Error('This is not JSON.'); }
       await draft.dryRun();
     });
   }, {class: 'small'}));
@@ -77,7 +77,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
   draft.onChange(() => {
     for (const [kind, element] of kinds) element.setAttribute('aria-pressed', String(draft.kind === kind && draft.drawing));
     const n = draft.points.length;
-    state.textContent = draft.imported ? `${draft.imported.name}, as it is.`
+    state.textContent = draft.imported ? `${draft.imported.name || 'What was pasted'}, as it is.`
       : draft.kind === 'Profile' ? 'Draw a shape, or drop a GeoJSON file on the map.'
       : draft.drawing ? `${number(n)} ${n === 1 ? 'corner' : 'corners'}. Click to add; double-click or Enter finishes, Backspace takes back, Escape cancels.`
       : n > 0 ? `${draft.kind === 'Polygon' ? 'Polygon' : 'Line'} of ${number(n)} corners.` : 'Draw a shape, or drop a GeoJSON file on the map.';
