@@ -37,8 +37,9 @@ constexpr const char* kNoPage =
 
 Response send(const Request& request, const PageFile& file, std::string caching) {
     auto unmodified = answer_where_unmodified(request, file.etag);
-    Response response = unmodified ? *std::move(unmodified)
-                                   : ok(std::string(file.type), file.content).with("ETag", file.etag);
+    Response response = unmodified
+                            ? *std::move(unmodified)
+                            : ok(std::string(file.type), file.content).with("ETag", file.etag);
     if (response.status < 400) response.with("Cache-Control", std::move(caching));
     return response;
 }
@@ -64,7 +65,9 @@ Response get_page(Services& services, const Request& request, const PathArgument
 }
 
 std::vector<Route> make_page_routes(Services& services) {
-    return {{"GET", std::string(kPageFolder) + "{file}", {},
+    return {{"GET",
+             std::string(kPageFolder) + "{file}",
+             {},
              [&services](const Request& request, const PathArguments& arguments) {
                  return get_page_file(services, request, arguments);
              }}};
