@@ -33,6 +33,12 @@ std::string_view type_of(std::string_view name) {
 
 }  // namespace
 
+PageFile make_page_file(std::string_view name, std::string content) {
+    const std::array<std::string_view, 1> parts{content};
+    std::string etag = '"' + hex_of(sha256_of(parts)).substr(0, kTagDigits) + '"';
+    return {type_of(name), std::move(content), std::move(etag)};
+}
+
 PageFiles PageFiles::read(const std::string& folder, std::string& error) {
     PageFiles page;
     std::error_code failed;
@@ -41,9 +47,7 @@ PageFiles PageFiles::read(const std::string& folder, std::string& error) {
         std::string name = entry.path().filename().string();
         auto content = read_file(entry.path().string(), error);
         if (!content) return {};
-        const std::array<std::string_view, 1> parts{*content};
-        std::string etag = '"' + hex_of(sha256_of(parts)).substr(0, kTagDigits) + '"';
-        PageFile file{type_of(name), *std::move(content), std::move(etag)};
+        PageFile file = make_page_file(name, *std::move(content));
         page.files_.emplace(std::move(name), std::move(file));
     }
     if (failed) {

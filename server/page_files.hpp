@@ -14,6 +14,9 @@ struct PageFile {
     std::string etag;
 };
 
+/// With the type that the name's ending says, under a tag of its content.
+PageFile make_page_file(std::string_view name, std::string content);
+
 /// The page of `/`, built by server/viewer: read once, whole, from one folder without its
 /// subfolders. What is asked for is looked up by name among what was read then, so that no path of
 /// a request ever reaches the file system.

@@ -20,7 +20,8 @@ constexpr const char* kPolicy =
     "connect-src 'self'; img-src 'self' data: blob:; style-src 'self'; frame-ancestors 'none'; "
     "base-uri 'none'; form-action 'none'";
 
-constexpr const char* kNoPage =
+/// What is served where the page was not built.
+constexpr std::string_view kNoPage =
     "<!DOCTYPE html>\n"
     "<html lang=\"en\">\n"
     "<meta charset=\"utf-8\">\n"
@@ -57,9 +58,9 @@ Response get_page_file(Services& services, const Request& request, const PathArg
 }  // namespace
 
 Response get_page(Services& services, const Request& request, const PathArguments&) {
+    static const PageFile kNone = make_page_file(PageFiles::kIndex, std::string(kNoPage));
     const PageFile* const page = services.page.find(PageFiles::kIndex);
-    Response response = page == nullptr ? ok("text/html; charset=utf-8", kNoPage)
-                                        : send(request, *page, "no-cache");
+    Response response = send(request, page == nullptr ? kNone : *page, "no-cache");
     if (response.status < 300) response.with("Content-Security-Policy", kPolicy);
     return response;
 }

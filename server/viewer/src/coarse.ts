@@ -2,7 +2,7 @@
 import type {Mesh} from './mesh';
 
 /** Cells along the longer side. */
-const CELLS = 320;
+const CELLS = 180;
 
 /**
  * Triangles over the mesh's own vertices, fewer of them: vertices of a cell of a grid become the

@@ -136,6 +136,12 @@ export class RegionsView {
     this.draw();
   }
 
+  /** Large fills are left out while the view moves and frames are slow; outlines stay. */
+  setEconomy(economy: boolean) {
+    const all = this.app.regions.reduce((sum, region) => sum + region.triangles.length, 0);
+    for (const fill of this.fills.values()) fill.visible = this.showFills && !(economy && all > 20_000);
+  }
+
   setExaggeration(value: number) {
     for (const fill of this.fills.values()) fill.material.uniforms.exaggeration.value = value;
   }

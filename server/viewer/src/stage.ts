@@ -36,6 +36,8 @@ export class Stage {
   private pending = false;
   private moving = false;
   private slow = 0;
+  /** Of the terrain on the screen. */
+  wasSlow = false;
   private lastFrame = 0;
   private lastTook = 0;
   private restTimer = 0;
@@ -67,11 +69,17 @@ export class Stage {
   }
 
   private pixelRatio() {
-    return Math.min(window.devicePixelRatio, 2) * (this.economy ? 0.6 : 1);
+    return Math.min(window.devicePixelRatio, 2) * (this.economy ? 0.5 : 1);
   }
 
   private moved() {
-    if (!this.moving) { this.moving = true; this.lastFrame = 0; this.slow = 0; }
+    if (!this.moving) {
+      this.moving = true;
+      this.lastFrame = 0;
+      this.slow = 0;
+      // What was slow the last time is not tried again.
+      if (this.wasSlow) this.setEconomy(true);
+    }
     clearTimeout(this.restTimer);
     const wait = Math.max(REST_MS, 3 * this.lastTook);
     this.restTimer = window.setTimeout(() => {
@@ -107,7 +115,10 @@ export class Stage {
     if (this.moving && this.lastFrame) {
       this.lastTook = Math.min(now - this.lastFrame, 1000);
       this.slow = this.lastTook > SLOW_MS ? this.slow + 1 : 0;
-      if (this.slow >= 2) this.setEconomy(true);
+      if (this.slow >= 2) {
+        this.wasSlow = true;
+        this.setEconomy(true);
+      }
     }
     this.lastFrame = now;
     ++this.frames;

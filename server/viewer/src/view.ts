@@ -34,12 +34,16 @@ export class View {
     this.regions = new RegionsView(app, () => { stage.invalidate(); });
     stage.world.add(this.regions.group, this.sketch, this.band, this.section, this.under);
     stage.onRest = () => { this.showFacets(); };
-    stage.onEconomy = (economy) => { this.terrain?.setEconomy(economy); };
+    stage.onEconomy = (economy) => {
+      this.terrain?.setEconomy(economy);
+      this.regions.setEconomy(economy);
+    };
     app.show = async (delta, isNew) => {
       if (isNew) {
         this.terrain?.dispose();
         this.regions.reset();
         this.isFresh = true;
+        stage.wasSlow = false;
         const wireframe = this.terrain?.wireframe ?? false;
         this.terrain = new TerrainView(app.mesh, this.ramp);
         this.terrain.sync(delta);
