@@ -25,6 +25,12 @@ build() {
     cmake --build --preset release --target tinsmith
 }
 
+# The page of /. The service is whole without it.
+build_page() {
+    docker/packages/install.sh viewer && server/viewer/build.sh build/viewer ||
+        echo "warning: the page could not be built; the service runs without it" >&2
+}
+
 demo() {
     build/release/tinsmith integrate tests/data/jacksboro.tif tests/data/lake.geojson \
         -o out.glb --report report.json
@@ -65,6 +71,7 @@ case ${1-} in
         ;;
     *)
         build
+        build_page
         serve "$@"
         ;;
 esac

@@ -126,6 +126,8 @@ node_count() {
 
 part_node() {
     build release || return
+    heading "the page"
+    check page server/viewer/build.sh build/viewer
     local package folder log good bad
     log=$(mktemp)
     for package in tests/*/package.json; do

@@ -32,8 +32,9 @@ bool has(const Response& response, std::string_view name) {
 }
 
 bool is_compressible(const Response& response) {
-    static constexpr std::array<std::string_view, 6> kTypes{
-        kJson, kGeoJson, "application/problem+json", kGltf, kObj, kXml};
+    static constexpr std::array<std::string_view, 10> kTypes{
+        kJson,      kGeoJson,          "application/problem+json", kGltf, kObj, kXml, "text/html",
+        "text/css", "text/javascript", "application/wasm"};
     const std::string type = api::media_type_of(response.content_type);
     return std::find(kTypes.begin(), kTypes.end(), type) != kTypes.end();
 }

@@ -6,7 +6,8 @@
 
 namespace tinsmith::server {
 
-/// Whether this answer goes out as gzip: JSON of more than a packet, to a client that takes it.
+/// Whether this answer goes out as gzip: JSON, or a file of a page, of more than a packet, to a
+/// client that takes it.
 /// Never what is compressed already (a Draco GLB gains nothing).
 bool wants_gzip(const Request& request, const Response& response);
 

@@ -158,6 +158,7 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     serve->add_flag("--demo", config.demo, "Load the bundled terrain as session \"demo\"")
         ->envname("TINSMITH_DEMO");
     add_setting(*serve, "demo_terrain", config.demo_terrain, "Load this terrain for --demo");
+    add_setting(*serve, "viewer", config.viewer, "Folder of the built page for /");
     add_setting(*serve, "threads", http.threads, "Connections served at the same time")
         ->check(CLI::Range(2, 1024));
     add_limits(*serve, http.limits);

@@ -18,6 +18,7 @@ struct ServeConfig {
     std::string port_file;  ///< empty: none
     bool demo = false;
     std::string demo_terrain;  ///< empty: the bundled one
+    std::string viewer;        ///< folder of the built page; empty: the bundled one, if any
     Policy policy;
     LogLevel log_level = LogLevel::Info;
 };

@@ -10,6 +10,7 @@
 #include "server/kept_answers.hpp"
 #include "server/limits.hpp"
 #include "server/mesh_cache.hpp"
+#include "server/page_files.hpp"
 #include "server/policy.hpp"
 #include "server/session_store.hpp"
 
@@ -42,6 +43,7 @@ struct Services {
 
     const Limits limits;
     const Policy policy;
+    PageFiles page;  ///< set before the first request, if at all
     SessionStore sessions;
     MeshCache meshes;                   ///< encoded
     KeptAnswers answers;                ///< for retries by key

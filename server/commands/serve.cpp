@@ -12,6 +12,7 @@
 #include "server/http_server.hpp"
 #include "server/log.hpp"
 #include "server/router.hpp"
+#include "server/routes/page_routes.hpp"
 #include "server/routes/route_table.hpp"
 #include "server/services.hpp"
 
@@ -81,8 +82,13 @@ int run_serve(const ServeConfig& config) {
     set_log_level(config.log_level);
     Services services(config.http.limits, config.policy);
     const Router router(make_routes(services));
+    const Router page_router(make_page_routes(services));
     HttpServer server(
-        config.http, [&router](const Request& request) { return router.handle(request); },
+        config.http,
+        [&router, &page_router](const Request& request) {
+            return request.path.starts_with(kPageFolder) ? page_router.handle(request)
+                                                         : router.handle(request);
+        },
         [&services](const Request& request, Response& response) {
             finish_answer(services.policy, request, response);
         });
@@ -93,6 +99,11 @@ int run_serve(const ServeConfig& config) {
         log_warning("LISTENING BEYOND THIS MACHINE (" + config.http.host +
                     ") WITHOUT KEYS: everyone who reaches the port can read, change and delete "
                     "every session. Put a proxy with access control in front.");
+    }
+    const std::string viewer = config.viewer.empty() ? bundled_page() : config.viewer;
+    if (!viewer.empty()) {
+        services.page = PageFiles::read(viewer, error);
+        if (!services.page.is_there()) return fail("--viewer: " + error);
     }
     if (config.demo) {
         const std::string path =

@@ -12,8 +12,10 @@ namespace tinsmith::server {
 
 // Each is one line of the route table: parse, check, call, write. None needs a socket.
 
+// page_routes.cpp
+Response get_page(Services&, const Request&, const PathArguments&);
+
 // service_routes.cpp
-Response get_welcome(Services&, const Request&, const PathArguments&);
 Response get_health(Services&, const Request&, const PathArguments&);  ///< takes no lock
 Response get_limits(Services&, const Request&, const PathArguments&);
 

@@ -73,7 +73,7 @@ std::vector<Route> make_routes(Services& services) {
     const auto mesh = api::mesh_option_names();
     const auto polygons = api::polygon_option_names();
     return {
-        {"GET", "/", {}, to(get_welcome)},
+        {"GET", "/", {}, to(get_page)},
         {"GET", "/healthz", {}, to(get_health)},
         {"GET", "/openapi.json", {}, to(get_description)},
         {"GET", "/docs", {}, to(get_docs)},

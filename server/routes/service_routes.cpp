@@ -8,16 +8,6 @@
 
 namespace tinsmith::server {
 
-Response get_welcome(Services&, const Request&, const PathArguments&) {
-    return ok("text/plain; charset=utf-8",
-              "Tinsmith edits terrain meshes.\n\n"
-              "  GET  /v1/sessions                 what is loaded\n"
-              "  POST /v1/sessions                 load a terrain (GeoTIFF or JSON)\n"
-              "  PUT  /v1/sessions/{id}            the same with an id of your choice\n"
-              "  POST /v1/sessions/{id}/polygons   cut GeoJSON polygons into its mesh\n"
-              "  GET  /v1/sessions/{id}/mesh.glb   the mesh as glTF with Draco\n");
-}
-
 Response get_health(Services&, const Request&, const PathArguments&) {
     return ok(kJson, "{\"status\":\"ok\"}\n");
 }

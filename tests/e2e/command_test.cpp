@@ -43,6 +43,11 @@ TEST_F(Command, TellsVersionAndHelp) {
     EXPECT_NE(output.find("--prot"), std::string::npos);
 }
 
+TEST_F(Command, RefusesAFolderWithNoPageInIt) {
+    EXPECT_EQ(run({"serve", "--port", "0", "--viewer", scratch.file("nowhere")}), 1);
+    EXPECT_NE(output.find("--viewer: "), std::string::npos) << output;
+}
+
 TEST_F(Command, IntegratesRealTerrain) {
     const std::string glb = scratch.file("out.glb");
     const std::string report = scratch.file("report.json");

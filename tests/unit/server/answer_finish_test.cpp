@@ -33,7 +33,8 @@ const std::string kLong(5000, ' ');
 TEST(AnswerFinish, CompressesLongJson) {
     const Request request = asking({{"accept-encoding", "gzip"}});
     for (const char* type : {"application/json", "application/geo+json", "application/problem+json",
-                             "Application/JSON; charset=utf-8"}) {
+                             "Application/JSON; charset=utf-8", "text/javascript; charset=utf-8",
+                             "text/css; charset=utf-8", "text/html; charset=utf-8"}) {
         const Response coded = finished(request, ok(type, kLong).with("ETag", "\"a-1\""));
         EXPECT_EQ(header(coded, "Content-Encoding"), "gzip") << type;
         EXPECT_LT(coded.body.size(), 200U);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mesh as it was: fetched as GLB with Draco, since it is only looked at.
+import {type BufferGeometry, type Camera, type CanvasTexture, Group, Mesh as Drawn, Vector3} from 'three';
+import {DRACOLoader} from 'three/examples/jsm/loaders/DRACOLoader.js';
+import {GLTFLoader} from 'three/examples/jsm/loaders/GLTFLoader.js';
+import {base, type Call, send} from './api';
+import type {App} from './app';
+import {Facets} from './facets';
+import {GroundIndex} from './ground_index';
+import {Mesh} from './mesh';
+import {groundMaterial} from './shaders';
+
+declare const DRACO_JS: string, DRACO_WASM: string;
+
+export class Compare {
+  /** Compared with this; null: nothing. */
+  version: number | null = null;
+  swipe = false;
+  part = 0.5;
+  group: Group | null = null;
+  readonly material;
+  private readonly loader = new GLTFLoader();
+  private index: GroundIndex | null = null;
+
+  constructor(private readonly app: App, ramp: CanvasTexture) {
+    this.material = groundMaterial(ramp);
+    const draco = new DRACOLoader();
+    draco.setDecoderPath({js: `${base}/${DRACO_JS}`, wasm: `${base}/${DRACO_WASM}`} as unknown as string);
+    this.loader.setDRACOLoader(draco);
+  }
+
+  async load(version: number | null) {
+    this.version = version;
+    this.group = null;
+    this.index = null;
+    if (version !== null) {
+      const call: Call = {method: 'GET', path: this.app.path('/mesh.glb'), query: {version: String(version), up: 'z', tolerance: '0.001', constraints: 'false', normals: 'false'}};
+      this.app.note(call);
+      const answer = await send(call);
+      const gltf = await this.loader.parseAsync(await answer.arrayBuffer(), '');
+      if (this.version !== version) return;
+      this.group = this.taken(gltf.scene);
+    } else {
+      this.swipe = false;
+    }
+    this.app.tell('compare');
+  }
+
+  /** In the axes of the session, relative to the origin of the mesh on the screen. */
+  private taken(scene: Group): Group {
+    const {origin} = this.app.mesh;
+    const group = new Group();
+    scene.updateMatrixWorld(true);
+    scene.traverse((object) => {
+      if (!(object instanceof Drawn)) return;
+      const shift = object.getWorldPosition(new Vector3());
+      const geometry = object.geometry as BufferGeometry;
+      const mesh = new Drawn(geometry, this.material);
+      mesh.position.set(shift.x - origin[0], shift.y - origin[1], shift.z - origin[2]);
+      mesh.frustumCulled = false;
+      const facets = new Facets();
+      facets.position.copy(mesh.position);
+      group.add(mesh, facets);
+    });
+    return group;
+  }
+
+  showFacets(on: boolean, camera: Camera) {
+    const children = this.group?.children ?? [];
+    for (let i = 0; i + 1 < children.length; i += 2) {
+      const {geometry} = children[i] as Drawn;
+      const facets = children[i + 1] as Facets;
+      facets.visible = false;
+      if (on) facets.update(geometry, geometry.getAttribute('position').count, geometry.getIndex()!.count / 3, camera);
+    }
+  }
+
+  /** To ask it for elevations. */
+  async ground(): Promise<GroundIndex | null> {
+    if (this.index || !this.group) return this.index;
+    const {origin} = this.app.mesh;
+    // A mesh that is fine over a wide ground comes in several parts.
+    const parts = this.group.children.filter((child): child is Drawn => child instanceof Drawn);
+    const mesh = new Mesh();
+    mesh.positions = new Float64Array(parts.reduce((sum, part) => sum + 3 * part.geometry.getAttribute('position').count, 0));
+    mesh.corners = new Uint32Array(parts.reduce((sum, part) => sum + part.geometry.getIndex()!.count, 0));
+    for (const {geometry, position} of parts) {
+      const from = geometry.getAttribute('position');
+      const index = geometry.getIndex()!;
+      for (let i = 0; i < index.count; ++i) mesh.corners[3 * mesh.triangleCount + i] = index.getX(i) + mesh.vertexCount;
+      for (let i = 0, at = 3 * mesh.vertexCount; i < from.count; ++i) {
+        mesh.positions[at++] = from.getX(i) + position.x + origin[0];
+        mesh.positions[at++] = from.getY(i) + position.y + origin[1];
+        mesh.positions[at++] = from.getZ(i) + position.z + origin[2];
+      }
+      mesh.vertexCount += from.count;
+      mesh.triangleCount += index.count / 3;
+    }
+    this.index = new GroundIndex(mesh);
+    return this.index;
+  }
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+import {App} from './app';
+import {Compare} from './compare';
+import {Draft} from './draft';
+import {buildLegend, buildLooks, buildReadout} from './furniture';
+import {Overlay} from './overlay';
+import {buildCalls} from './panels/calls';
+import {buildDraw} from './panels/draw';
+import {buildHead, buildTabs} from './panels/head';
+import {buildHistory, buildUndo} from './panels/history';
+import {buildProblem} from './panels/problem';
+import {buildProfile} from './panels/profile';
+import {buildRegions} from './panels/regions';
+import {buildTerrain} from './panels/terrain';
+import {Pointer} from './pointer';
+import {Profile} from './profile';
+import {RegionEdit} from './region_edit';
+import {Stage} from './stage';
+import {byId} from './ui';
+import {Upload} from './upload';
+import {View} from './view';
+
+const GEOJSON_TYPE = /"type"\s*:\s*"(Feature|FeatureCollection|GeometryCollection|(Multi)?(Point|LineString|Polygon))"/;
+const HEAD_BYTES = 65536;
+
+const app = new App();
+const draft = new Draft(app);
+const stage = new Stage(byId<HTMLCanvasElement>('view'));
+const view = new View(app, draft, stage);
+const compare = new Compare(app, view.ramp);
+view.compare = compare;
+const overlay = new Overlay(app, draft, stage);
+const pointer = new Pointer(app, draft, stage, () => { view.fit(); });
+const profile = new Profile(app, compare);
+const edit = new RegionEdit(app);
+const upload = new Upload(app);
+const live = byId('live');
+app.say = (text) => { live.textContent = text; };
+
+/** A file is a terrain, or polygons where it is GeoJSON. */
+async function take(file: File) {
+  const isText = /\.(geo)?json$/i.test(file.name);
+  const head = isText ? await file.slice(0, HEAD_BYTES).text() : '';
+  if (isText && GEOJSON_TYPE.test(head) && !/"(mesh|grid|points)"\s*:/.test(head)) {
+    const text = await file.text();
+    app.openTab('draw');
+    await app.attempt(async () => {
+      try { draft.take(file.name, text); } catch { throw new Error(`${file.name} is not JSON.`); }
+      await draft.dryRun();
+    });
+  } else {
+    app.openTab('terrain');
+    await app.attempt(() => upload.take(file));
+  }
+}
+
+buildHead(app);
+buildUndo(app);
+buildProblem(app, view);
+buildCalls(app);
+buildLegend(app, view);
+buildReadout(app, pointer);
+buildLooks(app, view, overlay, compare);
+buildTabs(app, [
+  ['terrain', 'Terrain', buildTerrain(app, upload, (file) => { void take(file); })],
+  ['draw', 'Draw', buildDraw(app, draft, (file) => { void take(file); })],
+  ['regions', 'Regions', buildRegions(app, edit, view)],
+  ['profile', 'Profile', buildProfile(app, draft, profile, view)],
+  ['history', 'History', buildHistory(app, compare)],
+]);
+view.follow(pointer);
+let hint = '';
+const showHint = () => {
+  byId('hint').textContent = draft.drawing ? 'Click to set corners. Enter finishes, Backspace takes back, Escape cancels.' : hint;
+};
+view.hint = (text) => { hint = text; showHint(); };
+app.on(['draft'], showHint);
+app.on(['progress'], () => { document.body.classList.toggle('busy', app.busy > 0); });
+pointer.onFinish = () => {
+  void app.attempt(() => (draft.kind === 'Profile' ? profile.ask([...draft.points]) : draft.dryRun()));
+};
+
+const frame = byId('frame');
+for (const kind of ['dragenter', 'dragover']) {
+  frame.addEventListener(kind, (event) => { event.preventDefault(); frame.classList.add('dropping'); });
+}
+frame.addEventListener('dragleave', () => { frame.classList.remove('dropping'); });
+frame.addEventListener('drop', (event) => {
+  event.preventDefault();
+  frame.classList.remove('dropping');
+  const file = event.dataTransfer?.files[0];
+  if (file) void take(file);
+});
+// Others may have changed the terrain while the page was not looked at.
+document.addEventListener('visibilitychange', () => {
+  if (document.visibilityState === 'visible' && app.session && app.busy === 0) void app.attempt(() => app.catchUp());
+});
+
+void app.attempt(async () => {
+  await app.listSessions();
+  const wanted = decodeURIComponent(location.hash.slice(1));
+  const first = [wanted, 'demo', app.sessions[0]?.id].find((id) => app.sessions.some((session) => session.id === id));
+  if (first) await app.open(first);
+  else { app.close(); app.openTab('terrain'); }
+});
+// For those who measure: `tinsmith.stage.frames`, and the mesh as it is.
+Object.assign(window, {tinsmith: {app, stage, view, draft}});

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which terrain: choose, load, copy, delete.
+import type {App} from '../app';
+import {TERRAIN_ENDINGS, type Upload} from '../upload';
+import {areaText, brief, button, bytesText, byId, figures, h, number, shortUnit} from '../ui';
+
+export function buildTerrain(app: App, upload: Upload, take: (file: File) => void): HTMLElement {
+  const file = h('input', {type: 'file', hidden: true, id: 'file', accept: `${TERRAIN_ENDINGS},.geojson`, onchange: () => {
+    if (file.files?.[0]) take(file.files[0]);
+    file.value = '';
+  }});
+  const bar = h('progress', {max: 1, 'aria-label': 'Progress'});
+  const told = h('span');
+  const progress = h('div', {class: 'progress', hidden: true}, told, bar, button('Stop', () => { void upload.stop(); }, {class: 'small'}));
+  const facts = h('div');
+  const list = h('ul', {class: 'sessions'});
+  const sure = h('div', {class: 'buttons', hidden: true});
+  const actions = h('div', {class: 'buttons'},
+    button('Fork', () => { void app.attempt(() => upload.fork()); }, {title: 'A copy that goes its own way'}),
+    button('Delete…', () => {
+      sure.hidden = false;
+      sure.replaceChildren(`Delete ${app.session?.id} for good?`,
+        button('Delete', () => { sure.hidden = true; void app.attempt(() => upload.remove()); }, {class: 'danger'}),
+        button('Keep', () => { sure.hidden = true; }));
+      (sure.querySelector('button') as HTMLElement).focus();
+    }));
+  app.on(['progress'], () => {
+    progress.hidden = upload.progress === null;
+    if (upload.progress) {
+      told.textContent = upload.progress.text;
+      bar.value = upload.progress.part;
+    }
+  });
+  app.on(['session'], () => {
+    const s = app.session;
+    actions.hidden = !s;
+    facts.replaceChildren();
+    if (!s) return;
+    const [x0, y0, z0, x1, y1, z1] = s.bounds;
+    const u = shortUnit(s.unit);
+    facts.append(figures(s.name || s.id, [], [
+      ['Vertices', number(s.vertices)], ['Triangles', number(s.triangles)], ['System', s.crs || 'none given'], ['Unit', s.unit],
+      ['Extent', `${brief(x1 - x0)} × ${brief(y1 - y0)} ${u}`], ['Plan area', `${areaText((x1 - x0) * (y1 - y0), s.unit)} (box)`],
+      ['Elevations', `${brief(z0)} to ${brief(z1)} ${u}`], ['In memory', bytesText(s.memory_bytes)]]));
+  });
+  app.on(['sessions', 'session'], () => {
+    list.replaceChildren(...app.sessions.map((s) => h('li', {}, button(s.name ? `${s.id} – ${s.name}` : s.id,
+      () => { void app.attempt(() => app.open(s.id)); }, {class: 'row', 'aria-current': s.id === app.session?.id ? 'true' : false}),
+      h('small', {}, `${number(s.triangles)} triangles`))));
+  });
+  return h('div', {}, h('div', {class: 'buttons'},
+    button('Load a terrain…', () => { byId('file').click(); }, {class: 'main'}), file),
+    h('p', {class: 'soft'}, 'Or drop a file on the map: GeoTIFF, JSON mesh or grid, and what else this server reads.'),
+    progress, h('h2', {}, 'Sessions'), list, actions, sure, facts);
+}

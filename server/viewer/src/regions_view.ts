@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+import {BufferAttribute, BufferGeometry, Group, Mesh as Drawn, type ShaderMaterial, Sphere} from 'three';
+import type {App} from './app';
+import {Lines, segmentsOf} from './lines';
+import {PATTERNS, regionMaterial} from './shaders';
+import type {TerrainView} from './terrain_view';
+
+/** Told apart with all kinds of sight (Okabe and Ito), and by pattern too. */
+const COLOURS = ['#0072b2', '#d55e00', '#8b3f9e', '#00806a', '#c2185b', '#6b5b00'];
+
+export function lookOf(id: string): {colour: string; pattern: number} {
+  const n = Math.max(0, Number(/\d+$/.exec(id)?.[0] ?? 1) - 1);
+  return {colour: COLOURS[n % COLOURS.length], pattern: (n + Math.floor(n / COLOURS.length)) % PATTERNS.length};
+}
+
+export function titleOf(app: App, id: string): string {
+  const properties = app.features.find((feature) => feature.tinsmith.id === id)?.properties;
+  const name = properties?.name ?? properties?.title;
+  return typeof name === 'string' && name ? `${id} ${name}` : id;
+}
+
+/** The lines of a geometry, each a list of positions. */
+export function linesOf(geometry: any): number[][][] {
+  switch (geometry?.type) {
+    case 'Polygon': case 'MultiLineString': return geometry.coordinates;
+    case 'MultiPolygon': return geometry.coordinates.flat();
+    case 'LineString': return [geometry.coordinates];
+    case 'GeometryCollection': return geometry.geometries.flatMap(linesOf);
+    case 'Feature': return linesOf(geometry.geometry);
+    case 'FeatureCollection': return geometry.features.flatMap(linesOf);
+    default: return [];
+  }
+}
+
+const GLOW_MS = 2600;
+
+/** Regions in their colours, the edges that they have made, and those that are new. */
+export class RegionsView {
+  readonly group = new Group();
+  private readonly constraints = new Lines({colour: '#13251d', width: 1.6});
+  private readonly chosen = new Lines({colour: '#0b1711', width: 3.2});
+  private readonly glow = new Lines({colour: '#ffb02e', width: 7, above: true});
+  private readonly fills = new Map<string, Drawn<BufferGeometry, ShaderMaterial>>();
+  private known = new Set<string>();
+  private glowing = 0;
+  showFills = true;
+  showLines = true;
+
+  constructor(private readonly app: App, private readonly draw: () => void) {
+    this.group.add(this.constraints, this.chosen, this.glow);
+    app.on(['selection', 'look'], () => { this.select(); });
+  }
+
+  /** After another terrain was opened nothing is new. */
+  reset() {
+    this.known.clear();
+    this.glow.set([]);
+    for (const fill of this.fills.values()) { fill.removeFromParent(); fill.geometry.dispose(); fill.material.dispose(); }
+    this.fills.clear();
+    this.constraints.set([]);
+    this.chosen.set([]);
+  }
+
+  /** The buffers of the ground may be others now. */
+  share(terrain: TerrainView) {
+    for (const fill of this.fills.values()) fill.geometry.setAttribute('position', terrain.position);
+  }
+
+  sync(terrain: TerrainView, exaggeration: number, pixel: number, isFirst: boolean) {
+    const {app} = this;
+    const {corners, origin} = app.mesh;
+    for (const fill of this.fills.values()) { fill.removeFromParent(); fill.geometry.dispose(); fill.material.dispose(); }
+    this.fills.clear();
+    for (const region of app.regions) {
+      const look = lookOf(region.polygon);
+      const index = new Uint32Array(3 * region.triangles.length);
+      region.triangles.forEach((t, i) => { index.set(corners.subarray(3 * t, 3 * t + 3), 3 * i); });
+      const geometry = new BufferGeometry();
+      geometry.setAttribute('position', terrain.position);
+      geometry.setIndex(new BufferAttribute(index, 1));
+      geometry.boundingSphere = new Sphere();
+      const fill = new Drawn(geometry, regionMaterial(look.colour, look.pattern));
+      fill.material.uniforms.exaggeration.value = exaggeration;
+      fill.material.uniforms.pixel.value = pixel;
+      fill.frustumCulled = false;
+      fill.renderOrder = 1;
+      this.fills.set(region.polygon, fill);
+      this.group.add(fill);
+    }
+    const ends: number[] = [];
+    const fresh: number[] = [];
+    for (const feature of app.features) {
+      for (const line of linesOf(feature.geometry)) {
+        const own = segmentsOf(line, origin);
+        for (const value of own) ends.push(value);
+        if (!isFirst && !this.known.has(feature.tinsmith.id)) for (const value of own) fresh.push(value);
+      }
+    }
+    this.known = new Set(app.features.map((feature) => feature.tinsmith.id));
+    this.constraints.set(ends);
+    if (fresh.length > 0) this.startGlow(fresh);
+    this.select();
+  }
+
+  private startGlow(ends: number[]) {
+    this.glow.set(ends);
+    const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    const begin = performance.now();
+    const token = ++this.glowing;
+    const step = () => {
+      if (token !== this.glowing) return;
+      const part = (performance.now() - begin) / GLOW_MS;
+      if (part >= 1) {
+        this.glow.set([]);
+      } else {
+        this.glow.material.opacity = calm ? 0.9 : 1 - part * part;
+        this.glow.material.linewidth = calm ? 4 : 9 - 6 * part;
+        setTimeout(() => { requestAnimationFrame(step); }, calm ? GLOW_MS : 30);
+      }
+      this.draw();
+    };
+    step();
+  }
+
+  private select() {
+    const {app} = this;
+    const feature = app.features.find((one) => one.tinsmith.id === app.selected);
+    this.chosen.set(feature ? linesOf(feature.geometry).flatMap((line) => segmentsOf(line, app.mesh.origin)) : []);
+    for (const [id, fill] of this.fills) {
+      fill.visible = this.showFills;
+      fill.material.uniforms.strength.value = id === app.selected ? 0.5 : 0.22;
+    }
+    this.chosen.visible = this.chosen.visible && this.showLines;
+    if (feature) this.chosen.material.color.set(lookOf(feature.tinsmith.id).colour);
+    this.constraints.visible = this.showLines && app.features.length > 0;
+    this.draw();
+  }
+
+  /** Large fills are left out while the view moves and frames are slow; outlines stay. */
+  setEconomy(economy: boolean) {
+    const all = this.app.regions.reduce((sum, region) => sum + region.triangles.length, 0);
+    for (const fill of this.fills.values()) fill.visible = this.showFills && !(economy && all > 20_000);
+  }
+
+  setExaggeration(value: number) {
+    for (const fill of this.fills.values()) fill.material.uniforms.exaggeration.value = value;
+  }
+}

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+import {Color, Group, type Object3D, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {MapControls} from 'three/examples/jsm/controls/MapControls.js';
+
+/** Frames slower than this while the view moves are drawn with less. */
+const SLOW_MS = 60;
+const REST_MS = 180;
+
+/** Whether drawing is not the processor's work, for which smooth edges cost too much. */
+function hasGraphicsCard(): boolean {
+  const context = document.createElement('canvas').getContext('webgl2', {failIfMajorPerformanceCaveat: true});
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return context !== null;
+}
+
+/**
+ * The canvas: one scene in the session's axes (z up, relative to its origin), drawn when something
+ * has changed and not otherwise.
+ */
+export class Stage {
+  readonly scene = new Scene();
+  /** What is stretched by the vertical exaggeration. */
+  readonly world = new Group();
+  readonly camera = new PerspectiveCamera(45, 1, 1, 1e5);
+  readonly renderer: WebGLRenderer;
+  readonly controls: MapControls;
+  /** Called before each frame, for what is HTML above the canvas. */
+  readonly onFrame: (() => void)[] = [];
+  /** Told whether less should be drawn because the view moves and frames are slow. */
+  onEconomy: (economy: boolean) => void = () => {};
+  /** Called when the view has come to rest. */
+  onRest: () => void = () => {};
+  /** The ground as it was, on the left of the part `swipe`; null: no comparison. */
+  compare: {before: Object3D; now: Object3D[]; part: number} | null = null;
+  frames = 0;
+  private pending = false;
+  private moving = false;
+  private slow = 0;
+  /** Of the terrain on the screen. */
+  wasSlow = false;
+  private lastFrame = 0;
+  private lastTook = 0;
+  private restTimer = 0;
+  private economy = false;
+  private readonly size = new Vector2();
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new WebGLRenderer({canvas, antialias: hasGraphicsCard(), powerPreference: 'high-performance'});
+    this.scene.background = new Color('#e9edea');
+    this.scene.add(this.world);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new MapControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.zoomToCursor = true;
+    this.controls.maxPolarAngle = 1.5;
+    this.controls.addEventListener('change', () => { this.moved(); });
+    new ResizeObserver(() => { this.resize(); }).observe(canvas.parentElement!);
+    this.resize();
+  }
+
+  private resize() {
+    const {clientWidth: width, clientHeight: height} = this.canvas.parentElement!;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(this.pixelRatio());
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  private pixelRatio() {
+    return Math.min(window.devicePixelRatio, 2) * (this.economy ? 0.5 : 1);
+  }
+
+  private moved() {
+    if (!this.moving) {
+      this.moving = true;
+      this.lastFrame = 0;
+      this.slow = 0;
+      // What was slow the last time is not tried again.
+      if (this.wasSlow) this.setEconomy(true);
+    }
+    clearTimeout(this.restTimer);
+    const wait = Math.max(REST_MS, 3 * this.lastTook);
+    this.restTimer = window.setTimeout(() => {
+      this.moving = false;
+      this.setEconomy(false);
+      this.onRest();
+    }, wait);
+    this.invalidate();
+  }
+
+  private setEconomy(economy: boolean) {
+    if (economy === this.economy) return;
+    this.economy = economy;
+    this.onEconomy(economy);
+    this.renderer.setPixelRatio(this.pixelRatio());
+    this.invalidate();
+  }
+
+  /** Draws at the next frame. */
+  invalidate() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame((now) => { this.pending = false; this.draw(now); });
+  }
+
+  /** Resolves when what is now in the scene has been drawn. */
+  drawn(): Promise<void> {
+    this.invalidate();
+    return new Promise((resolve) => requestAnimationFrame(() => { requestAnimationFrame(() => { resolve(); }); }));
+  }
+
+  private draw(now: number) {
+    if (this.moving && this.lastFrame) {
+      this.lastTook = Math.min(now - this.lastFrame, 1000);
+      this.slow = this.lastTook > SLOW_MS ? this.slow + 1 : 0;
+      if (this.slow >= 2) {
+        this.wasSlow = true;
+        this.setEconomy(true);
+      }
+    }
+    this.lastFrame = now;
+    ++this.frames;
+    const far = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = Math.max(far / 100, 0.01);
+    this.camera.far = far * 10 + this.reach * 4;
+    this.camera.updateProjectionMatrix();
+    for (const call of this.onFrame) call();
+    this.renderer.getSize(this.size);
+    if (!this.compare) {
+      this.renderer.setScissorTest(false);
+      this.renderer.render(this.scene, this.camera);
+      return;
+    }
+    const {before, now: current, part} = this.compare;
+    const edge = Math.round(this.size.x * part);
+    this.renderer.setScissorTest(true);
+    for (const isBefore of [true, false]) {
+      before.visible = isBefore;
+      const shown = current.map((object) => object.visible);
+      if (isBefore) for (const object of current) object.visible = false;
+      this.renderer.setScissor(isBefore ? 0 : edge, 0, isBefore ? edge : this.size.x - edge, this.size.y);
+      this.renderer.render(this.scene, this.camera);
+      current.forEach((object, i) => { object.visible = shown[i]; });
+    }
+    before.visible = false;
+    this.renderer.setScissorTest(false);
+  }
+
+  private reach = 1000;
+
+  /** Looks at a box of the scene from the south, from above. `steep`: straight down. */
+  fit(center: Vector3, width: number, height: number, steep = false) {
+    this.reach = Math.max(width, height, 1);
+    const across = Math.max((width / this.camera.aspect) * 1.05, height * (steep ? 1 : 1.02), 1e-3);
+    const distance = (across / 2 / Math.tan((this.camera.fov * Math.PI) / 360)) * 1.1;
+    this.controls.target.copy(center);
+    this.camera.near = this.reach / 1000;
+    this.camera.far = this.reach * 100;
+    this.camera.updateProjectionMatrix();
+    const direction = steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.08, -0.62, 0.78);
+    direction.normalize();
+    // Back until the corners of the box are within the frame, below what stands on its upper margin.
+    for (let back = distance * 0.7, tries = 0; tries < 30; ++tries, back *= 1.05) {
+      this.camera.position.copy(center).addScaledVector(direction, back);
+      this.camera.lookAt(center);
+      this.camera.updateMatrixWorld();
+      const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => new Vector3(x * width, y * height, 0).multiplyScalar(0.5).add(center).project(this.camera)));
+      if (corners.every((at) => Math.abs(at.x) < 0.96 && at.y > -0.97 && at.y < 0.86)) break;
+    }
+    this.controls.maxDistance = distance * 6;
+    this.controls.minDistance = this.reach * 1e-4;
+    this.controls.update();
+    this.invalidate();
+  }
+
+  /** Turns, shifts or nears the view by keys; shares of the view, and radians. */
+  nudge(right: number, up: number, turn: number, near: number) {
+    const {target} = this.controls;
+    const offset = this.camera.position.clone().sub(target);
+    const forward = new Vector3(-offset.x, -offset.y, 0).normalize();
+    const side = new Vector3(forward.y, -forward.x, 0);
+    const step = offset.length();
+    const shift = side.multiplyScalar(right * step).addScaledVector(forward, up * step);
+    offset.applyAxisAngle(new Vector3(0, 0, 1), turn).multiplyScalar(1 / near);
+    target.add(shift);
+    this.camera.position.copy(target).add(offset);
+    this.controls.update();
+    this.moved();
+  }
+
+  /** Of a point of the world, in CSS pixels from the canvas's corner; null: behind the eye. */
+  project(local: Vector3): {x: number; y: number} | null {
+    const p = local.clone();
+    p.z *= this.world.scale.z;
+    p.project(this.camera);
+    if (p.z > 1 || p.z < -1) return null;
+    return {x: ((p.x + 1) / 2) * this.canvas.clientWidth, y: ((1 - p.y) / 2) * this.canvas.clientHeight};
+  }
+
+  /** The ray under a CSS pixel, in the world's own axes. */
+  ray(x: number, y: number): {origin: Vector3; direction: Vector3} {
+    const at = new Vector3((x / this.canvas.clientWidth) * 2 - 1, 1 - (y / this.canvas.clientHeight) * 2, 0.5).unproject(this.camera);
+    const origin = this.camera.position.clone();
+    const direction = at.sub(origin).normalize();
+    const z = this.world.scale.z;
+    origin.z /= z;
+    direction.z /= z;
+    return {origin, direction};
+  }
+
+  /** Session units for a CSS pixel where the view looks. */
+  unitsPerPixel() {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360)) / this.canvas.clientHeight;
+  }
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A terrain from the reader's disk becomes a session, as a job with progress.
+import {base, type Call, type Job, json, Problem, send, type Session, upload} from './api';
+import type {App} from './app';
+
+const TYPES: Record<string, string> = {
+  tif: 'image/tiff', tiff: 'image/tiff', json: 'application/json', glb: 'model/gltf-binary', gltf: 'model/gltf+json',
+  xml: 'application/xml', obj: 'model/obj', csv: 'text/csv', xyz: 'text/csv', asc: 'text/plain', txt: 'text/plain',
+  gml: 'application/gml+xml', ply: 'model/ply', stl: 'model/stl',
+};
+export const TERRAIN_ENDINGS = Object.keys(TYPES).map((ending) => `.${ending}`).join(',');
+
+export class Upload {
+  progress: {text: string; part: number} | null = null;
+  private job: string | null = null;
+
+  constructor(private readonly app: App) {}
+
+  private tell(text: string, part: number) {
+    this.progress = {text, part};
+    this.app.tell('progress');
+  }
+
+  async take(file: File) {
+    const ending = file.name.slice(file.name.lastIndexOf('.') + 1).toLowerCase();
+    const stem = file.name.slice(0, -(ending.length + 1)).toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '').slice(0, 40) || 'terrain';
+    const taken = new Set(this.app.sessions.map((session) => session.id));
+    let id = stem;
+    for (let n = 2; taken.has(id); ++n) id = `${stem}-${n}`;
+    const call: Call = {
+      method: 'PUT', path: `/v1/sessions/${id}`, body: file, file: file.name,
+      headers: {'Content-Type': TYPES[ending] ?? file.type ?? 'application/octet-stream', Prefer: 'respond-async'},
+    };
+    this.app.note(call);
+    try {
+      this.tell(`Sending ${file.name}`, 0);
+      const sent = await upload(call, (part) => { this.tell(`Sending ${file.name}`, part / 2); });
+      if (sent.status === 202) await this.follow(sent.location!, file.name);
+    } finally {
+      this.progress = null;
+      this.job = null;
+      this.app.tell('progress');
+    }
+    await this.app.listSessions();
+    await this.app.open(id);
+  }
+
+  /** Until the job ends. */
+  private async follow(location: string, name: string) {
+    this.job = location;
+    for (let pause = 60; ; pause = Math.min(pause * 1.5, 500)) {
+      const job = await json<Job>({method: 'GET', path: location});
+      this.tell(`Building the mesh of ${name}`, 0.5 + job.progress / 2);
+      if (job.state === 'done') return;
+      if (job.state === 'stopped') throw new Problem(499, '', 'Stopped', `${name} was not loaded.`, [], null);
+      // What went wrong is the answer that the request would have had.
+      if (job.state === 'failed') { await send({method: 'GET', path: `${location}/result`}); return; }
+      await new Promise((resolve) => setTimeout(resolve, pause));
+    }
+  }
+
+  async stop() {
+    if (this.job) await fetch(base + this.job, {method: 'DELETE'});
+  }
+
+  async fork() {
+    const call: Call = {method: 'POST', path: this.app.path('/fork')};
+    this.app.note(call);
+    const made = await json<Session>(call);
+    await this.app.listSessions();
+    await this.app.open(made.id);
+  }
+
+  async remove() {
+    const call: Call = {method: 'DELETE', path: this.app.path()};
+    this.app.note(call);
+    await send(call);
+    await this.app.listSessions();
+    if (this.app.sessions[0]) await this.app.open(this.app.sessions[0].id); else this.app.close();
+  }
+}

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The terrain on the canvas, with all that lies on it.
+import {Vector3} from 'three';
+import type {App} from './app';
+import type {Compare} from './compare';
+import type {Draft} from './draft';
+import {Lines, segmentsOf} from './lines';
+import type {Pointer} from './pointer';
+import type {Profile} from './profile';
+import {linesOf, RegionsView} from './regions_view';
+import {rampTexture} from './shaders';
+import type {Stage} from './stage';
+import {TerrainView} from './terrain_view';
+
+const PARTS = 40;
+
+export class View {
+  readonly ramp = rampTexture();
+  terrain: TerrainView | null = null;
+  readonly regions: RegionsView;
+  range: [number, number] = [0, 1];
+  exaggeration = 1;
+  contours = false;
+  compare: Compare | null = null;
+  /** Shows a line above the map; set by the page. */
+  hint: (text: string) => void = () => {};
+  private readonly sketch = new Lines({colour: '#c2410c', width: 2.6, above: true});
+  private readonly band = new Lines({colour: '#c2410c', width: 1.6, above: true});
+  private readonly section = new Lines({colour: '#5b21b6', width: 2.6, above: true});
+  private readonly under = new Lines({colour: '#111111', width: 1.4, above: true});
+  private isFresh = true;
+
+  constructor(private readonly app: App, private readonly draft: Draft, readonly stage: Stage) {
+    this.regions = new RegionsView(app, () => { stage.invalidate(); });
+    stage.world.add(this.regions.group, this.sketch, this.band, this.section, this.under);
+    stage.onRest = () => { this.showFacets(); };
+    stage.onEconomy = (economy) => {
+      this.terrain?.setEconomy(economy);
+      this.regions.setEconomy(economy);
+    };
+    app.show = async (delta, isNew) => {
+      if (isNew) {
+        this.terrain?.dispose();
+        this.regions.reset();
+        this.isFresh = true;
+        stage.wasSlow = false;
+        const wireframe = this.terrain?.wireframe ?? false;
+        this.terrain = new TerrainView(app.mesh, this.ramp);
+        this.terrain.sync(delta);
+        this.terrain.wireframe = wireframe;
+        stage.world.add(...this.terrain.objects);
+        this.range = app.mesh.range();
+        this.look();
+        this.fit();
+      } else {
+        this.terrain!.sync(delta);
+        const range = app.mesh.range();
+        this.range = [Math.min(this.range[0], range[0]), Math.max(this.range[1], range[1])];
+        this.look();
+        this.regions.share(this.terrain!);
+      }
+      this.drawSketch();
+      await stage.drawn();
+      app.tell('mesh');
+    };
+    app.on(['regions'], () => {
+      if (!this.terrain) return;
+      this.regions.sync(this.terrain, this.exaggeration, Math.min(devicePixelRatio, 2), this.isFresh);
+      this.isFresh = false;
+      stage.invalidate();
+    });
+    app.on(['draft'], () => { this.drawSketch(); });
+  }
+
+  /** What is told by the pointer. */
+  follow(pointer: Pointer) {
+    this.app.on(['hover', 'draft'], () => {
+      const {hover} = pointer;
+      const {mesh} = this.app;
+      const last = this.draft.points[this.draft.points.length - 1];
+      this.band.set(this.draft.drawing && last && hover ? segmentsOf(this.app.ground.drape(last, [hover.x, hover.y], PARTS), mesh.origin) : []);
+      if (hover && !this.draft.drawing) {
+        const corner = [0, 1, 2, 0].map((k) => 3 * mesh.corners[3 * hover.triangle + k]);
+        this.under.set(segmentsOf(corner.map((at) => [mesh.positions[at], mesh.positions[at + 1], mesh.positions[at + 2]]), mesh.origin));
+      } else {
+        this.under.set([]);
+      }
+      this.stage.invalidate();
+    });
+  }
+
+  private drawSketch() {
+    const {draft, app} = this;
+    const lines = draft.imported ? linesOf(draft.imported.value)
+      : [draft.kind === 'Polygon' && !draft.drawing && draft.points.length > 2 ? [...draft.points, draft.points[0]] : draft.points];
+    const total = lines.reduce((all, line) => all + line.length, 0);
+    const parts = total > 2000 ? 2 : total > 200 ? 8 : PARTS;
+    const ends: number[] = [];
+    for (const line of lines)
+      for (let i = 1; i < line.length; ++i)
+        for (const value of segmentsOf(app.ground.drape(line[i - 1], line[i], parts), app.mesh.origin)) ends.push(value);
+    this.sketch.set(ends);
+    this.stage.invalidate();
+  }
+
+  showProfile(profile: Profile) {
+    const {ground, mesh} = this.app;
+    this.section.set(profile.line.flatMap((point, i) => (i ? segmentsOf(ground.drape(profile.line[i - 1], point, PARTS), mesh.origin) : [])));
+    this.stage.invalidate();
+  }
+
+  /** Uniforms and visibility by what is wanted. */
+  look() {
+    if (!this.terrain) return;
+    const step = contourStep(this.range[1] - this.range[0]);
+    const {origin} = this.app.mesh;
+    for (const {uniforms} of [this.terrain.material, ...(this.compare ? [this.compare.material] : [])]) {
+      uniforms.range.value.set(this.range[0] - origin[2], Math.max(this.range[1], this.range[0] + 1e-3) - origin[2]);
+      uniforms.exaggeration.value = this.exaggeration;
+      uniforms.contour.value = this.contours ? step : 0;
+    }
+    this.stage.world.scale.z = this.exaggeration;
+    this.regions.setExaggeration(this.exaggeration);
+    this.showCompare();
+    this.showFacets();
+    this.app.tell('look');
+  }
+
+  showCompare() {
+    const {compare, stage, terrain} = this;
+    if (!compare || !terrain) return;
+    if (stage.compare && stage.compare.before !== compare.group) stage.compare.before.removeFromParent();
+    if (compare.swipe && compare.group) {
+      stage.world.add(compare.group);
+      stage.compare = {before: compare.group, now: [...terrain.objects, this.regions.group], part: compare.part};
+    } else {
+      stage.compare = null;
+    }
+    stage.invalidate();
+  }
+
+  /** The edges of what is in view. */
+  showFacets() {
+    const {terrain, compare, stage} = this;
+    if (!terrain) return;
+    terrain.showFacets(stage.camera);
+    compare?.showFacets(terrain.wireframe && compare.swipe, stage.camera);
+    this.hint(terrain.wireframe && terrain.facets.inView > 0 && !terrain.facets.visible
+      ? `Zoom in to see the facets: ${terrain.facets.inView.toLocaleString('en')} are in view` : '');
+    stage.invalidate();
+  }
+
+  fit(steep = false) {
+    const b = this.app.session?.bounds;
+    if (!b) return;
+    const {origin} = this.app.mesh;
+    const middle = new Vector3((b[0] + b[3]) / 2 - origin[0], (b[1] + b[4]) / 2 - origin[1], ((b[2] + b[5]) / 2 - origin[2]) * this.exaggeration);
+    this.stage.fit(middle, b[3] - b[0], b[4] - b[1], steep);
+  }
+
+  /** Brings a plan position into the middle, near enough to see `size` around it. */
+  goTo(x: number, y: number, size: number) {
+    const {origin} = this.app.mesh;
+    const z = this.app.ground.at(x, y)?.z ?? origin[2];
+    this.stage.fit(new Vector3(x - origin[0], y - origin[1], (z - origin[2]) * this.exaggeration), size, size);
+  }
+}
+
+/** Twelve or so lines. */
+export function contourStep(span: number): number {
+  const raw = Math.max(span, 1e-6) / 14;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  return power * ([1, 2, 5, 10].find((n) => n * power >= raw) ?? 10);
+}
