@@ -115,6 +115,7 @@ TEST_F(PointRoutes, TakeCsvInDegreesWhereItIsSaidHow) {
     ASSERT_EQ(made.status, 201) << made.body;
     EXPECT_EQ(json::parse(made.body)["crs"], "EPSG:32632");
     EXPECT_NEAR(json::parse(made.body)["bounds"][1], 7098000, 10000) << "north";
+    EXPECT_EQ(ask("DELETE", "/v1/sessions/spots").status, 200);
     const Response refused = send_csv(text);
     EXPECT_EQ(told(refused), "CRS_GEOGRAPHIC CRS_GEOGRAPHIC");
     EXPECT_NE(refused.body.find("crs=EPSG:4326"), std::string::npos);
