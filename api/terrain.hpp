@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "api/fault.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/types/mesh_data.hpp"
 
@@ -22,13 +23,28 @@ struct TerrainOptions {
     std::string unit;     ///< "metre"; empty: what the bytes or the system say
 };
 
+/// Says in a fault where the point of its index was read, and the earlier one that it contradicts,
+/// in the format's own way.
+using PlacePoint =
+    std::function<void(Fault& fault, std::size_t point, std::optional<std::size_t> earlier)>;
+
+/// Where points stand in the bytes.
+struct PointsPlace {
+    std::string pointer;  ///< of all of them; empty: the format has none
+    PlacePoint of_point;
+};
+
 /// A terrain as any reader delivers it: mesh buffers and what is known of their coordinates.
 struct Terrain {
     core::MeshData mesh;
+    /// The mesh is vertices only, which are to be triangulated once they lie in a plan
+    /// (points_mesh.hpp).
+    std::optional<PointsPlace> points;
     std::string name;            ///< empty: none given
     std::string crs;             ///< "EPSG:32616"; empty: unknown
     std::string unit = "metre";  ///< unit of all three coordinates
     bool unit_is_said = false;   ///< by the bytes; otherwise it is only assumed
+    std::string unit_before;     ///< that the lengths had before they became metres; empty: unknown
     bool settled = false;        ///< system and unit stand, with all that the options say
     std::vector<std::string> notes;  ///< what was passed over, a sentence each, for people
     /// Where a vertex or a triangle stands in the bytes, for people: "line 12". Empty: its index

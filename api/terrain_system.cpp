@@ -221,8 +221,10 @@ Parsed<Terrain> moved(Terrain terrain, const SystemSettled& settled, const ReadL
     Faults faults;
     const std::size_t count = terrain.mesh.vertices.size();
     for (std::size_t i = 0; i < count && faults.size() < limits.max_faults; ++i) {
-        if (i % kBetweenLooks == 0 && limits.progress &&
-            !limits.progress(static_cast<double>(i) / static_cast<double>(count)))
+        // Points have most of their work before them.
+        const double share =
+            terrain.points ? 0.5 : static_cast<double>(i) / static_cast<double>(count);
+        if (i % kBetweenLooks == 0 && limits.progress && !limits.progress(share))
             return {FaultKind::Stopped, reading_stopped()};
         core::Point3& vertex = terrain.mesh.vertices[i];
         auto there = transformation(vertex.plan());
@@ -234,6 +236,7 @@ Parsed<Terrain> moved(Terrain terrain, const SystemSettled& settled, const ReadL
         Fault fault{std::move(no.code), std::move(no.detail), {}};
         fault.coordinate = {vertex.x, vertex.y};
         fault.index = i;
+        if (terrain.points) terrain.points->of_point(fault, i, std::nullopt);
         faults.push_back(std::move(fault));
     }
     if (!faults.empty()) return {FaultKind::Invalid, std::move(faults)};
@@ -254,6 +257,7 @@ void bring_from_metres(Terrain& terrain, const TerrainOptions& options) {
     if (const auto facts = !unit && crs ? find_crs(*crs) : std::nullopt;
         facts && facts->kind == CrsFacts::Kind::Projected)
         unit = unit_of_length(facts->metres);
+    if (!unit && !crs && !terrain.unit_before.empty()) unit = terrain.unit_before;
     if (!unit || unit == "metre") return;
     const double metres = metres_per(*unit);
     for (core::Point3& p : terrain.mesh.vertices)

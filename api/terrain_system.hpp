@@ -49,7 +49,8 @@ Parsed<SystemSettled> reconcile_system(
     const std::function<std::variant<std::string, NoPlace>()>& zone);
 
 /// For formats whose lengths are metres whatever the system: makes them ones of the unit that the
-/// options name, or else of the system's. Does nothing where neither is known.
+/// options name, else of the system's, and where there is none of what they were before. Does
+/// nothing where none is known.
 void bring_from_metres(Terrain& terrain, const TerrainOptions& options);
 
 /// Settles the system of a terrain that is vertices and no raster, and brings each vertex over

@@ -11,6 +11,7 @@
 #include "api/formats/glb_reader.hpp"
 #include "api/formats/landxml_reader.hpp"
 #include "api/formats/obj_reader.hpp"
+#include "api/formats/points_mesh.hpp"
 #include "api/formats/terrain_json.hpp"
 #include "api/terrain_system.hpp"
 #include "core/mesh/build.hpp"
@@ -73,8 +74,8 @@ constexpr Reader kReaders[] = {
          return api::read_ascii_grid(bytes, options, limits);
      }},
     {TerrainFormat::Csv, kCsvTypes,
-     [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
-         return api::read_csv(bytes, limits);
+     [](std::string_view bytes, const api::TerrainOptions& options, const api::ReadLimits& limits) {
+         return api::read_csv(bytes, options, limits);
      }},
     {TerrainFormat::Glb, kGlbTypes,
      [](std::string_view bytes, const api::TerrainOptions&, const api::ReadLimits& limits) {
@@ -200,6 +201,7 @@ api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat fo
     begin_stage(0.4);
     auto terrain = reader_of(format).read(bytes, options, limits);
     if (terrain) terrain = settled(*std::move(terrain), format, options, limits);
+    if (terrain) terrain = api::triangulated(*std::move(terrain), limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
     return built(std::move(*terrain), format, options);

@@ -14,7 +14,7 @@
 #include "api/formats/csv_columns.hpp"
 #include "api/formats/csv_line.hpp"
 #include "api/formats/json_reader_values.hpp"
-#include "api/formats/points_mesh.hpp"
+#include "api/projection.hpp"
 
 namespace tinsmith::api {
 
@@ -58,10 +58,21 @@ Number number_of(std::string_view text) {
     return number;
 }
 
+/// Columns of degrees need a system that has some, and a plan to be brought to.
+csv::Degrees degrees_of(const TerrainOptions& options) {
+    const auto crs = normalise_crs(options.crs);
+    const auto facts = crs ? find_crs(*crs) : std::nullopt;
+    if (!facts || facts->kind != CrsFacts::Kind::Geographic) return csv::Degrees::WithoutSystem;
+    return options.project.empty() ? csv::Degrees::WithoutPlan : csv::Degrees::Taken;
+}
+
 class CsvReader {
   public:
-    CsvReader(std::string_view bytes, const ReadLimits& limits)
-        : text_(csv::without_mark(bytes)), limits_(limits), faults_(limits.max_faults) {}
+    CsvReader(std::string_view bytes, const TerrainOptions& options, const ReadLimits& limits)
+        : text_(csv::without_mark(bytes)),
+          options_(options),
+          limits_(limits),
+          faults_(limits.max_faults) {}
 
     Parsed<Terrain> read() {
         if (text_.substr(0, 4096).find('\0') != text_.npos) {
@@ -73,16 +84,16 @@ class CsvReader {
         Terrain terrain;
         read_lines();
         if (!faults_.empty()) return std::move(faults_).refusal<Terrain>();
-        auto mesh = mesh_of_points(
-            points_, limits_, "",
-            [this](Fault& fault, std::size_t point, std::optional<std::size_t> earlier) {
-                fault.detail = "Line " + std::to_string(lines_[point]) + ": " + fault.detail;
+        terrain.mesh.vertices = std::move(points_);
+        terrain.points = PointsPlace{
+            {},
+            [lines = std::move(lines_)](Fault& fault, std::size_t point,
+                                        std::optional<std::size_t> earlier) {
+                fault.detail = "Line " + std::to_string(lines[point]) + ": " + fault.detail;
                 if (earlier)
                     fault.detail += " (point " + std::to_string(*earlier) + " is in line " +
-                                    std::to_string(lines_[*earlier]) + ")";
-            });
-        if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
-        terrain.mesh = std::move(*mesh);
+                                    std::to_string(lines[*earlier]) + ")";
+            }};
         return terrain;
     }
 
@@ -98,6 +109,7 @@ class CsvReader {
     bool has_stopped(const csv::Lines& lines);
 
     std::string_view text_;
+    const TerrainOptions& options_;
     const ReadLimits& limits_;
     FaultLog faults_;
     csv::Separator separator_ = csv::Separator::Comma;
@@ -151,7 +163,7 @@ bool CsvReader::begin(std::string_view line, std::size_t number) {
                      {}});
         return false;
     }
-    const auto columns = csv::columns_named(fields_, number, faults_);
+    const auto columns = csv::columns_named(fields_, number, degrees_of(options_), faults_);
     if (columns) columns_ = *columns;
     return columns.has_value();
 }
@@ -190,8 +202,9 @@ bool CsvReader::has_stopped(const csv::Lines& lines) {
 
 }  // namespace
 
-Parsed<Terrain> read_csv(std::string_view bytes, const ReadLimits& limits) {
-    return CsvReader(bytes, limits).read();
+Parsed<Terrain> read_csv(std::string_view bytes, const TerrainOptions& options,
+                         const ReadLimits& limits) {
+    return CsvReader(bytes, options, limits).read();
 }
 
 bool looks_like_csv(std::string_view bytes) {
@@ -206,7 +219,7 @@ bool looks_like_csv(std::string_view bytes) {
     if (csv::begins_as_number(line))
         return fields.size() >= 3 && number_of(fields[0].text).code.empty();
     FaultLog faults(1);
-    return csv::columns_named(fields, 1, faults).has_value() ||
+    return csv::columns_named(fields, 1, csv::Degrees::WithoutSystem, faults).has_value() ||
            (!faults.empty() &&
             std::move(faults).refusal<Terrain>().faults()[0].code != "COLUMN_MISSING");
 }

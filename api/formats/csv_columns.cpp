@@ -15,7 +15,16 @@ constexpr std::array<std::string_view, 3> kNames = {" x e east easting ", " y n 
 constexpr std::array<std::string_view, 3> kKnown = {
     "x, e, east or easting", "y, n, north or northing",
     "z, h, height, elev, elevation, alt or altitude"};
-constexpr std::string_view kDegrees = " lon long longitude lng lat latitude ";
+/// Of longitude and latitude.
+constexpr std::array<std::string_view, 2> kDegrees = {" lon long longitude lng ", " lat latitude "};
+
+std::string what_degrees_need(Degrees degrees) {
+    if (degrees == Degrees::WithoutPlan)
+        return " is in degrees, and a terrain needs a plan: add project=auto (the UTM zone of its "
+               "centre), or name the system, such as project=EPSG:32633.";
+    return " is in degrees: say in which system, and where to bring them, such as crs=EPSG:4326 "
+           "(terrain_crs=EPSG:4326 beside polygons) and project=auto, or project the points first.";
+}
 
 /// Small letters, and without a unit: "Easting (m)" is "easting".
 std::string plain_name(std::string_view name) {
@@ -38,7 +47,7 @@ std::string at(std::size_t line, std::size_t column) {
 }
 
 std::optional<Columns> columns_named(const std::vector<Field>& names, std::size_t line,
-                                     FaultLog& faults) {
+                                     Degrees degrees, FaultLog& faults) {
     Columns columns;
     columns.count = names.size();
     columns.are_named = true;
@@ -55,15 +64,17 @@ std::optional<Columns> columns_named(const std::vector<Field>& names, std::size_
     for (std::size_t i = 0; i < names.size(); ++i) {
         const std::string name = plain_name(names[i].text);
         const std::string here = at(line, names[i].column);
-        if (is_among(kDegrees, name)) {
-            faults.add(FaultKind::Unsupported,
-                       {"CRS_GEOGRAPHIC",
-                        here + shown(names[i].text) +
-                            " is in degrees; project the points to metres first.",
-                        {}});
+        const bool is_degrees = is_among(kDegrees[0], name) || is_among(kDegrees[1], name);
+        if (is_degrees && degrees != Degrees::Taken) {
+            faults.add(
+                FaultKind::Unsupported,
+                {"CRS_GEOGRAPHIC", here + shown(names[i].text) + what_degrees_need(degrees), {}});
+            continue;
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!is_among(kNames[axis], name)) continue;
+            const bool is_axis = is_among(kNames[axis], name) ||
+                                 (axis < kDegrees.size() && is_among(kDegrees[axis], name));
+            if (!is_axis) continue;
             if (found[axis]) {
                 faults.add(FaultKind::Invalid,
                            {"COLUMN_REPEATED",

@@ -18,11 +18,20 @@ struct Columns {
     bool are_named = false;  ///< by a header: others are passed over
 };
 
+/// What becomes of columns in degrees.
+enum class Degrees {
+    Taken,
+    WithoutSystem,  ///< refused: it is not said that the points are in degrees, and in which
+    WithoutPlan,    ///< refused: it is not said where to bring them
+};
+
 /// By the names in a header: x, east(ing), e; y, north(ing), n; z, height, elev(ation), alt(itude),
-/// h; in any case and order, with or without a unit in brackets or after a comma. Where a coordinate has no column,
-/// or two, or columns are degrees, the faults say so and there is nothing.
+/// h; in any case and order, with or without a unit in brackets or after a comma. Longitude (lon,
+/// long, lng) and latitude (lat) are x and y where degrees are taken. Where a coordinate has no
+/// column, or two, or columns are degrees and those are not taken, the faults say so and there is
+/// nothing.
 std::optional<Columns> columns_named(const std::vector<Field>& names, std::size_t line,
-                                     FaultLog& faults);
+                                     Degrees degrees, FaultLog& faults);
 
 /// "Line 3, column 7: " for the beginning of a detail.
 std::string at(std::size_t line, std::size_t column);

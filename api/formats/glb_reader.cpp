@@ -98,6 +98,7 @@ class SceneReader {
             terrain_.notes.push_back("Skins were passed over: the mesh is as it was bound.");
         terrain_.unit_is_said = true;
         if (const auto crs = normalise_crs(model_.crs)) terrain_.crs = *crs;
+        terrain_.unit_before = unit_of_length(model_.unit_to_metre).value_or("");
         name_places();
         return std::move(terrain_);
     }

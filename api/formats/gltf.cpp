@@ -82,20 +82,23 @@ std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOpti
 std::vector<std::pair<std::string, GlbExtra>> extras_of(const core::MeshData& mesh,
                                                         const GltfOptions& options,
                                                         const GltfResult& result) {
-    return {{"origin", result.origin},
-            {"up", options.up == UpAxis::Y ? std::string("y") : std::string("z")},
-            {"unit_to_metre", options.unit_to_metre},
-            {"tolerance", options.tolerance},
-            {"step", result.step},
-            {"position_bits", std::size_t{result.bits}},
-            {"max_error", result.max_error},
-            {"axis_error", result.axis_error},
-            {"vertices", mesh.vertices.size()},
-            {"triangles", mesh.triangles.size()},
-            {"constraints", mesh.constraints.size()},
-            {"primitives", result.primitives},
-            {"flipped", result.flipped},
-            {"collapsed", result.collapsed}};
+    std::vector<std::pair<std::string, GlbExtra>> extras{
+        {"origin", result.origin},
+        {"up", options.up == UpAxis::Y ? std::string("y") : std::string("z")},
+        {"unit_to_metre", options.unit_to_metre},
+        {"tolerance", options.tolerance},
+        {"step", result.step},
+        {"position_bits", std::size_t{result.bits}},
+        {"max_error", result.max_error},
+        {"axis_error", result.axis_error},
+        {"vertices", mesh.vertices.size()},
+        {"triangles", mesh.triangles.size()},
+        {"constraints", mesh.constraints.size()},
+        {"primitives", result.primitives},
+        {"flipped", result.flipped},
+        {"collapsed", result.collapsed}};
+    if (!options.crs.empty()) extras.emplace_back("crs", options.crs);
+    return extras;
 }
 
 /// What Draco drops or what rounds too far is an error here, not a surprise for a client.

@@ -22,6 +22,7 @@ struct GltfOptions {
     bool constraints = true;     ///< constraint edges as a primitive of mode LINES
     bool normals = true;         ///< smooth, weighted by area
     double unit_to_metre = 1.0;  ///< length of the mesh's unit; glTF is always in metres
+    std::string crs = {};        ///< told in the scene's `extras`; empty: nothing is said
 };
 
 /// The file and what can be said of it. All lengths in metres, axes of the session (z up).
@@ -60,6 +61,7 @@ struct GltfResult {
 /// contain it, the newest first, at most kMostFeatureSets of them, as rows of the property table
 /// (EXT_structural_metadata); the primitive's `extras` name all, and the scene's describe them.
 ///
+/// Triangles have a matt grey material that is seen from both sides, lines a dark one.
 /// Constraint edges are never compressed and have the very positions of the mesh. What the result
 /// says is also in the scene's `extras`. The same mesh and options give the same bytes.
 /// Every vertex should be used by a triangle. Cost: Draco's, about 0.2 s for a million triangles,

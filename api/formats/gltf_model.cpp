@@ -363,6 +363,9 @@ class ModelReader {
             if (const Json* extras = member(scene, "extras")) {
                 model_.is_z_up = text(*extras, "up") == "z";
                 model_.crs = text(*extras, "crs");
+                const Json* unit = member(*extras, "unit_to_metre");
+                if (unit != nullptr && unit->is_number())
+                    model_.unit_to_metre = unit->get<double>();
             }
         });
         if (found) return;

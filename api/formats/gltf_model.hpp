@@ -79,7 +79,8 @@ struct GltfModel {
     std::vector<std::size_t> roots;  ///< of the scene that is shown
     bool is_ours = false;            ///< lines are constraints, and extras may be believed
     bool is_z_up = false;
-    std::string crs;  ///< as the extras say; not normalised
+    std::string crs;             ///< as the extras say; not normalised
+    double unit_to_metre = 1.0;  ///< as the extras say, unchecked
 };
 
 /// Takes a glTF apart, binary or JSON with data: URIs. Knows nothing of other files: a URI that

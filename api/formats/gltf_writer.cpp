@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "api/formats/gltf_container.hpp"
@@ -193,8 +194,27 @@ class ModelBuilder {
         to.extras = Value(std::move(extras));
     }
 
+    /// One for all triangles and one for all lines, written where there are some. glTF's own
+    /// default is a mirror of metal, black in most viewers.
+    int material_of(GlbMode mode) {
+        std::optional<int>& known = mode == GlbMode::Lines ? line_material_ : ground_material_;
+        if (known) return *known;
+        tinygltf::Material material;
+        material.name = mode == GlbMode::Lines ? "constraints" : "terrain";
+        material.doubleSided = true;
+        auto& look = material.pbrMetallicRoughness;
+        const double grey = mode == GlbMode::Lines ? 0.02 : 0.5;  // linear
+        look.baseColorFactor = {grey, grey, grey, 1.0};
+        look.metallicFactor = 0.0;
+        look.roughnessFactor = 0.9;
+        model_.materials.push_back(std::move(material));
+        known = as_index(model_.materials.size() - 1);
+        return *known;
+    }
+
     void add_primitive(tinygltf::Mesh& mesh, const GlbPrimitive& from) {
         tinygltf::Primitive to;
+        to.material = material_of(from.mode);
         to.mode = from.mode == GlbMode::Lines ? TINYGLTF_MODE_LINE : TINYGLTF_MODE_TRIANGLES;
         if (from.draco) {
             fill_draco(*from.draco, to);
@@ -242,6 +262,8 @@ class ModelBuilder {
     const GlbScene& from_;
     tinygltf::Model model_;
     GltfBytes bytes_;
+    std::optional<int> ground_material_;
+    std::optional<int> line_material_;
     std::map<std::string, bool> extensions_;  ///< those in use; whether nothing works without
 };
 

@@ -15,6 +15,7 @@
 #include <pugixml.hpp>
 
 #include "api/crs.hpp"
+#include "api/formats/breaklines.hpp"
 #include "api/formats/fault_log.hpp"
 #include "api/formats/shown_text.hpp"
 #include "core/predicates/orientation.hpp"
@@ -191,8 +192,11 @@ class LandXmlReader {
         if (!log_.empty()) return;
         for (const pugi::xml_node& list : definition.children())
             if (name_of(list) == "Faces") read_faces(list);
-        note_rest(surface);
         leave_out_unused();
+        const pugi::xml_node source = child_of(surface, "SourceData");
+        for (const pugi::xml_node& list : source.children())
+            if (name_of(list) == "Breaklines") read_breaklines(list);
+        note_rest(source);
         name_places();
     }
 
@@ -283,9 +287,44 @@ class LandXmlReader {
         faces_.push_back(face_);
     }
 
-    void note_rest(const pugi::xml_node& surface) {
-        const pugi::xml_node source = child_of(surface, "SourceData");
+    /// Those that run along edges of the mesh are constraints; of the others there is a note.
+    void read_breaklines(const pugi::xml_node& list) {
+        if (!log_.empty()) return;
+        Breaklines lines(terrain_.mesh);
+        std::vector<core::Point3> line;
+        std::size_t passed_over = 0;
+        for (const pugi::xml_node& breakline : list.children()) {
+            if (!go_on()) return;
+            const bool is_taken =
+                read_places(child_of(breakline, "PntList3D"), line) && lines.take(line);
+            if (!is_taken) ++passed_over;
+        }
+        if (passed_over > 0)
+            terrain_.notes.push_back(std::to_string(passed_over) +
+                                     " breaklines that do not run along edges of the faces were "
+                                     "passed over.");
+    }
+
+    /// False: they are no positions.
+    static bool read_places(const pugi::xml_node& list, std::vector<core::Point3>& out) {
+        out.clear();
+        std::array<double, 3> p{};
+        std::size_t axis = 0;
+        Words words(list.child_value());
+        for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+            const char* end = word.data() + word.size();
+            const auto [stop, error] = std::from_chars(word.data(), end, p[axis]);
+            if (error != std::errc() || stop != end || !std::isfinite(p[axis])) return false;
+            if (++axis < p.size()) continue;
+            axis = 0;
+            out.push_back({p[1], p[0], p[2]});
+        }
+        return axis == 0;
+    }
+
+    void note_rest(const pugi::xml_node& source) {
         for (const pugi::xml_node& part : source.children()) {
+            if (name_of(part) == "Breaklines") continue;
             const auto count = std::distance(part.begin(), part.end());
             terrain_.notes.push_back(shown(name_of(part)) + " of the source data, " +
                                      std::to_string(count) + ", were passed over.");

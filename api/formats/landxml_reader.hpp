@@ -14,7 +14,8 @@ namespace tinsmith::api {
 /// without those that are invisible (i="1"); points that no visible face names are left out. A
 /// face of a LandXML has no upper side: each comes out counter-clockwise in plan. The linear unit
 /// is taken from Units, the system from CoordinateSystem's epsgCode.
-/// Breaklines, boundaries, contours and the like are passed over, with a note.
+/// Breaklines that run along edges of the faces are constraints. Others, boundaries, contours and
+/// the like are passed over, with a note.
 ///
 /// A document with a DOCTYPE is refused: no entity is ever defined. Faults name the point's id or
 /// the face's number, and the line.

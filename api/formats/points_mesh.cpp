@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/formats/points_mesh.hpp"
 
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -10,8 +11,8 @@ namespace tinsmith::api {
 
 namespace {
 
-Parsed<core::MeshData> refusal(const core::Errors& errors, const ReadLimits& limits,
-                               const std::string& pointer, const PlacePoint& place) {
+Parsed<Terrain> refusal(const core::Errors& errors, const ReadLimits& limits,
+                        const PointsPlace& place) {
     Faults faults;
     auto kind = FaultKind::Invalid;
     for (const core::Error& error : errors) {
@@ -19,13 +20,13 @@ Parsed<core::MeshData> refusal(const core::Errors& errors, const ReadLimits& lim
             return {FaultKind::Stopped, reading_stopped()};
         if (error.code == core::ErrorCode::MeshTooLarge) kind = FaultKind::TooLarge;
         if (faults.size() == limits.max_faults) break;
-        Fault fault{std::string(core::code_name(error.code)), error.detail, pointer};
+        Fault fault{std::string(core::code_name(error.code)), error.detail, place.pointer};
         if (error.place.position) {
             fault.coordinate = {error.place.position->x, error.place.position->y};
         }
         if (error.place.vertex) {
             fault.index = *error.place.vertex;
-            place(fault, *error.place.vertex, error.place.earlier);
+            place.of_point(fault, *error.place.vertex, error.place.earlier);
         }
         faults.push_back(std::move(fault));
     }
@@ -34,23 +35,24 @@ Parsed<core::MeshData> refusal(const core::Errors& errors, const ReadLimits& lim
 
 }  // namespace
 
-Parsed<core::MeshData> mesh_of_points(std::span<const core::Point3> points,
-                                      const ReadLimits& limits, const std::string& pointer,
-                                      const PlacePoint& place) {
+Parsed<Terrain> triangulated(Terrain terrain, const ReadLimits& limits) {
+    if (!terrain.points) return terrain;
     std::function<bool(double)> progress;
     if (limits.progress)
         progress = [&limits](double share) { return limits.progress(0.5 + 0.5 * share); };
-    auto mesh = core::delaunay(points, progress);
-    if (!mesh) return refusal(mesh.errors(), limits, pointer, place);
+    auto mesh = core::delaunay(terrain.mesh.vertices, progress);
+    if (!mesh) return refusal(mesh.errors(), limits, *terrain.points);
     if (mesh->triangles.size() > limits.max_triangles) {
         return {
             FaultKind::TooLarge,
             {"TOO_MANY_TRIANGLES",
              "The points make " + std::to_string(mesh->triangles.size()) + " triangles; at most " +
                  std::to_string(limits.max_triangles) + " are taken here.",
-             pointer}};
+             terrain.points->pointer}};
     }
-    return std::move(*mesh);
+    terrain.mesh = std::move(*mesh);
+    terrain.points.reset();
+    return terrain;
 }
 
 }  // namespace tinsmith::api

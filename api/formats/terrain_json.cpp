@@ -9,7 +9,6 @@
 #include "api/formats/grid_mesh.hpp"
 #include "api/formats/json_reader.hpp"
 #include "api/formats/json_reader_values.hpp"
-#include "api/formats/points_mesh.hpp"
 
 namespace tinsmith::api {
 
@@ -36,7 +35,12 @@ class VertexList : public Value, public Container {
                std::string_view list)
         : vertex_(out, item), most_(most), list_(list) {}
 
-    Container* array(Reader&) override { return this; }
+    bool has_begun() const { return has_begun_; }
+
+    Container* array(Reader&) override {
+        has_begun_ = true;
+        return this;
+    }
     Value* element(Reader& reader) override {
         if (vertex_.out.size() < most_) return &vertex_;
         reader.stop(FaultKind::TooLarge,
@@ -59,6 +63,7 @@ class VertexList : public Value, public Container {
 
     Vertex vertex_;
     std::size_t most_;
+    bool has_begun_ = false;
     std::string_view list_;
 };
 
@@ -238,7 +243,8 @@ class Body : public Object {
     explicit Body(const ReadLimits& limits)
         : limits_(limits),
           mesh_(terrain_.mesh, limits),
-          points_list_(points_, limits.max_vertices, "a point [x, y, z]", "an array of points"),
+          points_list_(terrain_.mesh.vertices, limits.max_vertices, "a point [x, y, z]",
+                       "an array of points"),
           grid_object_(grid_, limits) {
         expect({{"name", &name_},
                 {"crs", &crs_},
@@ -249,17 +255,14 @@ class Body : public Object {
     }
 
     /// Points leave half of the work to be done when the body has been read.
-    double share_of_reading() const { return points_.empty() ? 1.0 : 0.5; }
+    double share_of_reading() const { return points_list_.has_begun() ? 0.5 : 1.0; }
 
     Parsed<Terrain> result(FaultLog&& log) && {
         if (log.empty() && has("points")) {
-            auto mesh =
-                mesh_of_points(points_, limits_, "/points",
-                               [](Fault& fault, std::size_t point, std::optional<std::size_t>) {
-                                   fault.pointer = json::pointer_to("/points", point);
-                               });
-            if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
-            terrain_.mesh = std::move(*mesh);
+            terrain_.points = PointsPlace{
+                "/points", [](Fault& fault, std::size_t point, std::optional<std::size_t>) {
+                    fault.pointer = json::pointer_to("/points", point);
+                }};
         }
         if (log.empty() && has("grid")) {
             auto mesh = mesh_of_grid(grid_, limits_, "/grid");
@@ -288,7 +291,6 @@ class Body : public Object {
     ReadLimits limits_;
     Terrain terrain_;
     Grid grid_;
-    std::vector<core::Point3> points_;
     json::Text name_{terrain_.name};
     KnownText crs_{terrain_.crs, &normalise_crs, "CRS_UNKNOWN", "Write it like \"EPSG:32616\"."};
     KnownText unit_{terrain_.unit, &normalise_unit, "UNIT_UNKNOWN",

@@ -17,7 +17,7 @@ namespace tinsmith::api {
 ///      | "grid": {"origin": [x,y], "cell": [dx,dy], "columns": n, "rows": m,
 ///                 "elevations": [z | null, ...]}}
 ///
-/// Points are triangulated (`core::delaunay`); their faults point to `/points/17`.
+/// Points are left for `triangulated` (points_mesh.hpp); their faults point to `/points/17`.
 /// What system and unit are worth is for in_its_system to say (terrain_system.hpp).
 /// Members may come in any order; unknown and repeated ones are refused by name. Names every
 /// fault, not only the first. Whether a mesh's indices exist and its triangles fit together is

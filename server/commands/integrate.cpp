@@ -100,6 +100,7 @@ int write_results(const IntegrateConfig& config, const Session& session,
         return kExitRefused;
     }
     options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
+    options.gltf.crs = session.facts().crs;
     if (options.regions && dry_run) {
         bar.clear();
         complain("a dry run makes no regions: leave --regions or --dry-run out");

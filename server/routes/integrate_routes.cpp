@@ -181,6 +181,7 @@ Response send(const Services& services, const Request& request, const Session& s
     }
     const auto& source = std::get<MeshSource>(found);
     options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
+    options.gltf.crs = session.facts().crs;
     return gltf_response(request, source.mesh, options.gltf,
                          {kAnswerTypes[type], source.regions ? &*source.regions : nullptr});
 }

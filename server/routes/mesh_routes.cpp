@@ -45,10 +45,10 @@ std::span<const std::string_view> options_of(MeshFormat format) {
 
 /// Every option of glTF in the tag and in the key; none: what is sent unless told otherwise.
 std::string gltf_suffix_of(const api::MeshOptions& options) {
-    // Names all members: one that is added has to be told apart here too. The unit is the
+    // Names all members: one that is added has to be told apart here too. Unit and system are the
     // session's.
     const auto& [gltf, regions, bbox] = options;
-    const auto& [compression, tolerance, up, constraints, normals, unit] = gltf;
+    const auto& [compression, tolerance, up, constraints, normals, unit, crs] = gltf;
     const api::GltfOptions usual;
     std::string suffix;
     if (compression != usual.compression || tolerance != usual.tolerance || up != usual.up ||
@@ -227,6 +227,7 @@ Response send_mesh(Services& services, const Request& request, const std::string
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
     api::MeshOptions options = std::get<0>(asked);
     options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
+    options.gltf.crs = session.facts().crs;
     return send(services, session, request, suffix_of(format, options), options.regions,
                 [&](MeshGround ground) {
                     auto source = source_of(std::move(ground), options, session.facts().unit,

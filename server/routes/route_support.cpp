@@ -136,6 +136,7 @@ Response mesh_after(const Request& request, const Session& session, std::uint64_
     }
     api::GltfOptions options;
     options.unit_to_metre = api::metres_per(session.facts().unit);
+    options.crs = session.facts().crs;
     return gltf_response(request, *mesh, options, {type, nullptr, dry_run ? std::string() : made});
 }
 

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "api/formats/csv.hpp"
+#include "api/formats/points_mesh.hpp"
 #include "core/mesh/build.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -13,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     limits.max_vertices = 10'000;
     limits.max_triangles = 20'000;
     tinsmith::api::looks_like_csv(bytes);
-    const auto parsed = tinsmith::api::read_csv(bytes, limits);
+    auto parsed = tinsmith::api::read_csv(bytes, {}, limits);
+    if (parsed) parsed = tinsmith::api::triangulated(*std::move(parsed), limits);
     if (parsed) {
         if (!tinsmith::core::build_tin(parsed->mesh)) std::abort();
         return 0;

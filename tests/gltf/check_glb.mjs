@@ -39,6 +39,16 @@ function checkAccessors(primitive, where) {
   }
 }
 
+/// glTF's default material is a metal, which is black where there is nothing to mirror.
+function checkMaterials(gltf) {
+  for (const {mode = 4, material} of gltf.meshes.flatMap((mesh) => mesh.primitives)) {
+    const {name, doubleSided, pbrMetallicRoughness} = gltf.materials?.[material] ?? {};
+    const looksRight = doubleSided && pbrMetallicRoughness?.metallicFactor === 0;
+    if (!looksRight || name !== (mode === 4 ? 'terrain' : 'constraints'))
+      throw new Error(`a primitive of mode ${mode} has the material ${name}`);
+  }
+}
+
 /// Checks one file; returns a line of what was found, throws an Error on a failure.
 export async function checkGlb(bytes, {mesh, tolerance = 0.005, unit = 1} = {}) {
   const report = await validator.validateBytes(new Uint8Array(bytes), {maxIssues: 20});
@@ -47,6 +57,7 @@ export async function checkGlb(bytes, {mesh, tolerance = 0.005, unit = 1} = {}) 
     throw new Error(`${report.issues.numErrors} validator errors, first: ${first.code} ${first.pointer}: ${first.message}`);
   }
   const {gltf, primitives} = await readGlb(bytes);
+  checkMaterials(gltf);
   primitives.forEach((primitive, i) => checkAccessors(primitive, `primitive ${i}`));
   const triangles = primitives.filter((primitive) => primitive.mode === 4);
   const lines = primitives.filter((primitive) => primitive.mode === 1);

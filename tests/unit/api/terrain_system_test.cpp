@@ -98,6 +98,32 @@ TEST(TerrainSystem, DegreesAreBroughtOverVertexByVertex) {
     EXPECT_NEAR(lambert.mesh.vertices[0].x, 652301.56, 0.01);
 }
 
+TEST(TerrainSystem, APointWithoutAPlaceIsNamedAsItsFormatDoes) {
+    Terrain terrain = terrain_in("EPSG:4326");
+    terrain.mesh.triangles.clear();
+    terrain.mesh.vertices[1].y = 95.0;
+    terrain.points = PointsPlace{
+        "/points", [](Fault& fault, std::size_t point, std::optional<std::size_t> earlier) {
+            EXPECT_FALSE(earlier);
+            fault.pointer = "/points/" + std::to_string(point);
+        }};
+    EXPECT_EQ(refused(terrain, options("EPSG:2154")), "COORDINATE_OUT_OF_RANGE /points/1 ");
+}
+
+TEST(TerrainSystem, LengthsInMetresBecomeOnesOfTheUnitTheyHad) {
+    const auto brought = [](std::string crs, std::string before, const TerrainOptions& how) {
+        Terrain terrain = terrain_in(std::move(crs), "metre");
+        terrain.unit_before = std::move(before);
+        bring_from_metres(terrain, how);
+        return terrain.unit;
+    };
+    EXPECT_EQ(brought("", "foot", {}), "foot");
+    EXPECT_EQ(brought("", "foot", options("", "", "metre")), "metre");
+    EXPECT_EQ(brought("EPSG:2264", "US survey foot", {}), "US survey foot");
+    EXPECT_EQ(brought("EPSG:32616", "foot", {}), "metre");
+    EXPECT_EQ(brought("", "", {}), "metre");
+}
+
 TEST(TerrainSystem, ElevationsBecomeOnesOfTheNewUnit) {
     Terrain terrain = terrain_in("EPSG:4326");
     for (Point3& p : terrain.mesh.vertices)

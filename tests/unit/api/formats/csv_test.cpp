@@ -7,8 +7,19 @@
 
 #include <gtest/gtest.h>
 
+#include "api/formats/points_mesh.hpp"
+
 namespace tinsmith::api {
 namespace {
+
+/// As the service does it: read, then triangulated.
+Parsed<Terrain> read(std::string_view text, const ReadLimits& limits,
+                     const TerrainOptions& options = {}) {
+    auto terrain = read_csv(text, options, limits);
+    if (!terrain) return terrain;
+    EXPECT_TRUE(terrain->points && terrain->mesh.triangles.empty());
+    return triangulated(*std::move(terrain), limits);
+}
 
 using Points = std::vector<core::Point3>;
 
@@ -16,7 +27,7 @@ const Points kSquare{{0, 0, 1}, {10, 0, 2.5}, {10, 10, -3}, {0, 10, 4}};
 
 void expect_square(std::string_view text) {
     SCOPED_TRACE(std::string(text));
-    const auto terrain = read_csv(text, {});
+    const auto terrain = read(text, {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->mesh.vertices, kSquare);
     EXPECT_EQ(terrain->mesh.triangles.size(), 2U);
@@ -51,12 +62,57 @@ TEST(Csv, TakesColumnsByTheNamesOfAHeader) {
 }
 
 TEST(Csv, ReadsTheNearestDouble) {
-    const auto terrain = read_csv(
+    const auto terrain = read(
         "0.1,0.30000000000000004,1e-3\n123456789.123456789,0,2\n.5,5.,1.7976931348623157e0\n", {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->mesh.vertices[0], (core::Point3{0.1, 0.30000000000000004, 1e-3}));
     EXPECT_EQ(terrain->mesh.vertices[1].x, 123456789.123456789);
     EXPECT_EQ(terrain->mesh.vertices[2], (core::Point3{0.5, 5.0, 1.7976931348623157}));
+}
+
+TerrainOptions in_system(std::string crs, std::string project) {
+    TerrainOptions options;
+    options.crs = std::move(crs);
+    options.project = std::move(project);
+    return options;
+}
+
+TEST(Csv, TakesLongitudeAndLatitudeOfAGeographicSystemThatIsProjected) {
+    for (const char* header : {"lon,lat,z", "Longitude (deg),Latitude (deg),Height (m)",
+                               "lng,LAT,elevation", "long,latitude,alt"}) {
+        const auto terrain = read_csv(std::string(header) + "\n2,48,100\n3,48,200\n2,49,300\n",
+                                      in_system("EPSG:4326", "auto"), {});
+        ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
+        EXPECT_EQ(terrain->mesh.vertices, (Points{{2, 48, 100}, {3, 48, 200}, {2, 49, 300}}));
+    }
+    const auto swapped = read_csv("lat;z;lon\n48;100;2\n48;200;3\n49;300;2\n",
+                                  in_system("EPSG:4326", "EPSG:2154"), {});
+    ASSERT_TRUE(swapped.ok());
+    EXPECT_EQ(swapped->mesh.vertices[1], (core::Point3{3, 48, 200}));
+}
+
+TEST(Csv, RefusesDegreesWithoutSystemOrPlanAndSaysWhatToAdd) {
+    const auto hint = [](const char* header, const TerrainOptions& options) {
+        const auto terrain = read_csv(std::string(header) + "\n1,2,3\n", options, {});
+        if (terrain) return std::string("taken");
+        EXPECT_EQ(terrain.kind(), FaultKind::Unsupported);
+        EXPECT_EQ(terrain.faults().size(), 2U) << "one for each column";
+        EXPECT_EQ(terrain.faults()[1].code, "CRS_GEOGRAPHIC");
+        EXPECT_EQ(terrain.faults()[1].detail.substr(0, 18), "Line 1, column 5: ");
+        return terrain.faults()[1].detail;
+    };
+    for (const TerrainOptions& options :
+         {in_system("", ""), in_system("", "auto"), in_system("EPSG:32616", "auto")}) {
+        const std::string detail = hint("lon,lat,z", options);
+        EXPECT_NE(detail.find("crs=EPSG:4326"), std::string::npos) << detail;
+        EXPECT_NE(detail.find("project=auto"), std::string::npos) << detail;
+    }
+    const std::string detail = hint("lon,lat,z", in_system("EPSG:4326", ""));
+    EXPECT_NE(detail.find("add project=auto"), std::string::npos) << detail;
+    EXPECT_EQ(detail.find("crs="), std::string::npos) << detail;
+    const auto twice = read_csv("x,lat,lon,z\n1,2,3,4\n", in_system("EPSG:4326", "auto"), {});
+    ASSERT_FALSE(twice.ok());
+    EXPECT_EQ(twice.faults()[0].code, "COLUMN_REPEATED");
 }
 
 struct BadText {
@@ -104,7 +160,7 @@ TEST(Csv, NamesWhatIsWrongAndWhere) {
     };
     for (const BadText& bad : cases) {
         SCOPED_TRACE(bad.text);
-        const auto terrain = read_csv(bad.text, {});
+        const auto terrain = read(bad.text, {});
         ASSERT_FALSE(terrain.ok());
         const Fault& fault = terrain.faults()[0];
         EXPECT_EQ(fault.code, bad.code);
@@ -114,7 +170,7 @@ TEST(Csv, NamesWhatIsWrongAndWhere) {
 }
 
 TEST(Csv, NamesAllFaultsUpToTheLimit) {
-    const auto terrain = read_csv("0,a,b\n10,0,2\nc,10,3\n1,2\n3,4,5\n", {});
+    const auto terrain = read("0,a,b\n10,0,2\nc,10,3\n1,2\n3,4,5\n", {});
     ASSERT_FALSE(terrain.ok());
     ASSERT_EQ(terrain.faults().size(), 4U);
     EXPECT_EQ(terrain.faults()[0].index, 0U);
@@ -124,28 +180,28 @@ TEST(Csv, NamesAllFaultsUpToTheLimit) {
     std::string many;
     for (int i = 0; i < 1000; ++i)
         many += "a line,of,words\n7,8,b\n";
-    EXPECT_EQ(read_csv("1,2,3\n" + many, {}).faults().size(), kMaxFaults);
+    EXPECT_EQ(read("1,2,3\n" + many, {}).faults().size(), kMaxFaults);
     ReadLimits limits;
     limits.max_faults = 3;
-    EXPECT_EQ(read_csv("1,2,3\n" + many, limits).faults().size(), 3U);
+    EXPECT_EQ(read("1,2,3\n" + many, limits).faults().size(), 3U);
 }
 
 TEST(Csv, HoldsToItsLimits) {
     ReadLimits limits;
     limits.max_vertices = 4;
     const std::string four = "0,0,1\n10,0,2.5\n10,10,-3\n0,10,4\n";
-    EXPECT_TRUE(read_csv(four, limits).ok());
-    const auto vertices = read_csv(four + "5,5,5\n", limits);
+    EXPECT_TRUE(read(four, limits).ok());
+    const auto vertices = read(four + "5,5,5\n", limits);
     ASSERT_FALSE(vertices.ok());
     EXPECT_EQ(vertices.kind(), FaultKind::TooLarge);
     EXPECT_EQ(vertices.faults()[0].code, "TOO_MANY_VERTICES");
     limits.max_triangles = 1;
-    EXPECT_EQ(read_csv(four, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
+    EXPECT_EQ(read(four, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
     // A line of a million separators makes no million fields.
-    const auto wide = read_csv(std::string(1'000'000, ','), {});
+    const auto wide = read(std::string(1'000'000, ','), {});
     ASSERT_FALSE(wide.ok());
     EXPECT_EQ(wide.faults()[0].code, "TOO_MANY_COLUMNS");
-    EXPECT_EQ(read_csv("1" + std::string(1'000'000, ','), {}).faults()[0].code, "WRONG_LENGTH");
+    EXPECT_EQ(read("1" + std::string(1'000'000, ','), {}).faults()[0].code, "WRONG_LENGTH");
 }
 
 TEST(Csv, TellsItsProgressAndStops) {
@@ -158,13 +214,13 @@ TEST(Csv, TellsItsProgressAndStops) {
         told.push_back(share);
         return true;
     };
-    ASSERT_TRUE(read_csv(text, limits).ok());
+    ASSERT_TRUE(read(text, limits).ok());
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GT(told.size(), 12U);
     for (const std::size_t stop : {std::size_t{3}, told.size() - 2}) {
         std::size_t asked = 0;
         limits.progress = [&](double) { return asked++ != stop; };
-        const auto stopped = read_csv(text, limits);
+        const auto stopped = read(text, limits);
         ASSERT_FALSE(stopped.ok());
         EXPECT_EQ(stopped.kind(), FaultKind::Stopped);
         EXPECT_EQ(asked, stop + 1);

@@ -328,5 +328,48 @@ TEST(WriteGlb, HoldsExtremeExtents) {
     }
 }
 
+TEST(WriteGlb, HasMaterialsThatLookRightElsewhere) {
+    for (const Compression compression :
+         {Compression::Draco, Compression::Meshopt, Compression::None}) {
+        for (const bool constraints : {true, false}) {
+            GltfOptions options;
+            options.compression = compression;
+            options.constraints = constraints;
+            options.tolerance = 1.0;
+            const DecodedGlb glb =
+                testing::decode_glb(written(testing::hills(6, 5, 30), options).bytes);
+            const auto& materials = glb.json.at("materials");
+            EXPECT_EQ(materials.size(), constraints ? 2U : 1U) << "none that is not used";
+            for (const DecodedPrimitive& primitive : glb.primitives) {
+                const auto& material =
+                    materials.at(primitive.json.at("material").get<std::size_t>());
+                EXPECT_EQ(material.at("name"), primitive.mode == 1 ? "constraints" : "terrain");
+                EXPECT_EQ(material.at("doubleSided"), true);
+                const auto& look = material.at("pbrMetallicRoughness");
+                EXPECT_EQ(look.at("metallicFactor"), 0.0);
+                EXPECT_EQ(look.at("roughnessFactor"), 0.9);
+                const auto& color = look.at("baseColorFactor");
+                EXPECT_EQ(color[0], color[1]);
+                EXPECT_EQ(color[1], color[2]);
+                EXPECT_EQ(color[3], 1.0);
+            }
+        }
+    }
+}
+
+TEST(WriteGlb, TellsTheSystemIfThereIsOne) {
+    GltfOptions options;
+    const core::MeshData mesh = testing::hills(2, 2, 30);
+    const auto extras = [&] {
+        return testing::decode_glb(written(mesh, options).bytes)
+            .json.at("scenes")
+            .at(0)
+            .at("extras");
+    };
+    EXPECT_FALSE(extras().contains("crs"));
+    options.crs = "EPSG:2264";
+    EXPECT_EQ(extras().at("crs"), "EPSG:2264");
+}
+
 }  // namespace
 }  // namespace tinsmith::api

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/mesh/build.hpp"
+
 namespace tinsmith::api {
 namespace {
 
@@ -71,7 +73,40 @@ TEST(LandXml, KnowsPrefixesAndPassesSourceDataOverWithANote) {
     const auto read = read_landxml(text, {});
     ASSERT_TRUE(read) << read.faults().front().detail;
     EXPECT_EQ(read->notes,
-              std::vector<std::string>{"\"Breaklines\" of the source data, 1, were passed over."});
+              std::vector<std::string>{"1 breaklines that do not run along edges of the faces were "
+                                       "passed over."});
+}
+
+TEST(LandXml, TakesBreaklinesAlongEdgesAsConstraints) {
+    const auto read_with = [](const std::string& breaklines) {
+        return read_landxml(
+            file("<Surface><SourceData><Breaklines>" + breaklines +
+                 "</Breaklines><Contours><Contour/></Contours></SourceData><Definition><Pnts>"
+                 "<P id='1'>0 0 0</P><P id='9'>5 5 5</P><P id='2'>0 1 0.1</P><P id='3'>1 1 0</P>"
+                 "<P id='4'>1 0 7</P></Pnts><Faces><F>1 2 3</F><F>1 3 4</F></Faces></Definition>"
+                 "</Surface>"),
+            {});
+    };
+    const auto line = [](const std::string& places) {
+        return "<Breakline><PntList3D>" + places + "</PntList3D></Breakline>";
+    };
+    const auto taken = read_with(line("0 0 0 1 1 0 1 0 7") + line("\n1 1 0\n0 1 1e-1\n"));
+    ASSERT_TRUE(taken) << taken.faults().front().detail;
+    EXPECT_EQ(taken->mesh.constraints,
+              (std::vector<std::array<std::uint32_t, 2>>{{0, 2}, {2, 3}, {2, 1}}));
+    EXPECT_EQ(taken->notes.size(), 2U) << "the unused point, the contours";
+    EXPECT_TRUE(core::build_tin(taken->mesh));
+    // Of a vertex only, beside one, along no edge, beyond the end, and what is no numbers.
+    const std::string others[] = {line("0 0 0"),         line("0 0 0 0 1 0.2"),
+                                  line("0 1 0.1 1 0 7"), line("0 0 0 1 1 0 2"),
+                                  line("0 0 0 1 1 x"),   line("0 0 0 1 1 0 0 1 0.1 1 0 7")};
+    for (const std::string& other : others) {
+        const auto left = read_with(other + line("0 0 0 1 1 0"));
+        ASSERT_TRUE(left) << left.faults().front().detail;
+        EXPECT_EQ(left->mesh.constraints.size(), 1U) << other;
+        ASSERT_EQ(left->notes.size(), 3U) << other;
+        EXPECT_EQ(left->notes[1].substr(0, 13), "1 breaklines ");
+    }
 }
 
 TEST(LandXml, WantsOneSurface) {

@@ -7,8 +7,18 @@
 
 #include <gtest/gtest.h>
 
+#include "api/formats/points_mesh.hpp"
+
 namespace tinsmith::api {
 namespace {
+
+/// As the service does it: read, then triangulated where it is points.
+Parsed<Terrain> read(std::string_view body, const ReadLimits& limits) {
+    auto terrain = read_terrain_json(body, limits);
+    if (!terrain) return terrain;
+    EXPECT_FALSE(terrain->points && !terrain->mesh.triangles.empty());
+    return triangulated(*std::move(terrain), limits);
+}
 
 TEST(TerrainJson, ReadsAMeshWithMembersInAnyOrder) {
     const auto terrain = read_terrain_json(
@@ -26,10 +36,10 @@ TEST(TerrainJson, ReadsAMeshWithMembersInAnyOrder) {
     EXPECT_EQ(terrain->mesh.triangles[1], (std::array<std::uint32_t, 3>{2, 1, 3}));
 }
 
-TEST(TerrainJson, TriangulatesPoints) {
+TEST(TerrainJson, LeavesPointsToBeTriangulated) {
     const std::string body =
         R"({"points": [[0,0,1],[10,0,2],[10,10,3],[0,0,1],[0,10,4]], "crs": "EPSG:32616"})";
-    const auto terrain = read_terrain_json(body, {});
+    const auto terrain = read(body, {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->crs, "EPSG:32616");
     EXPECT_EQ(terrain->mesh.vertices,
@@ -37,10 +47,10 @@ TEST(TerrainJson, TriangulatesPoints) {
     EXPECT_EQ(terrain->mesh.triangles.size(), 2U);
     ReadLimits limits;
     limits.max_vertices = 4;
-    EXPECT_EQ(read_terrain_json(body, limits).faults()[0].code, "TOO_MANY_VERTICES");
+    EXPECT_EQ(read(body, limits).faults()[0].code, "TOO_MANY_VERTICES");
     limits.max_vertices = 5;
     limits.max_triangles = 1;
-    EXPECT_EQ(read_terrain_json(body, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
+    EXPECT_EQ(read(body, limits).faults()[0].code, "TOO_MANY_TRIANGLES");
 }
 
 TEST(TerrainJson, TellsOfPointsInTwoHalvesAndStopsInEach) {
@@ -55,13 +65,13 @@ TEST(TerrainJson, TellsOfPointsInTwoHalvesAndStopsInEach) {
         told.push_back(share);
         return true;
     };
-    ASSERT_TRUE(read_terrain_json(body, limits).ok());
+    ASSERT_TRUE(read(body, limits).ok());
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GT(told.size(), 8U);
     for (const std::size_t stop : {std::size_t{2}, told.size() - 1}) {
         std::size_t asked = 0;
         limits.progress = [&](double) { return asked++ != stop; };
-        const auto stopped = read_terrain_json(body, limits);
+        const auto stopped = read(body, limits);
         ASSERT_FALSE(stopped.ok());
         EXPECT_EQ(stopped.kind(), FaultKind::Stopped);
         EXPECT_EQ(asked, stop + 1);
@@ -150,7 +160,7 @@ TEST(TerrainJson, NamesWhatIsWrongAndWhere) {
     };
     for (const BadBody& bad : cases) {
         SCOPED_TRACE(bad.body);
-        const auto terrain = read_terrain_json(bad.body, {});
+        const auto terrain = read(bad.body, {});
         ASSERT_FALSE(terrain.ok());
         EXPECT_EQ(terrain.kind(), bad.kind);
         ASSERT_EQ(terrain.faults().size(), 1U) << terrain.faults()[1].code;
