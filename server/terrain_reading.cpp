@@ -107,6 +107,12 @@ const Reader& reader_of(TerrainFormat format) {
     return *std::ranges::find(kReaders, format, &Reader::format);
 }
 
+/// Without the mark of UTF-8 that some programs begin a text with.
+std::string_view without_mark(std::string_view bytes) {
+    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+    return bytes;
+}
+
 /// The first word of the first line that is neither empty nor a comment.
 std::string_view first_word(std::string_view bytes) {
     while (!bytes.empty()) {
@@ -144,7 +150,6 @@ bool is_gltf(std::string_view bytes) {
 }
 
 bool is_xml(std::string_view bytes) {
-    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
     return first_word(bytes).starts_with('<');
 }
 
@@ -181,6 +186,7 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     const bool is_tiff = bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv) ||
                          bytes.starts_with("II+\0"sv) || bytes.starts_with("MM\0+"sv);
     if (is_tiff) return TerrainFormat::GeoTiff;
+    bytes = without_mark(bytes);
     if (bytes.starts_with("glTF") || is_gltf(bytes)) return TerrainFormat::Glb;
     if (is_xml(bytes)) return TerrainFormat::LandXml;
     if (api::begins_as_ascii_grid(bytes)) return TerrainFormat::AsciiGrid;
@@ -199,6 +205,8 @@ api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat fo
                                         const api::TerrainOptions& options,
                                         const api::ReadLimits& limits) {
     begin_stage(0.4);
+    // Faults of JSON count its bytes from the first, and its reader knows the mark.
+    if (format != TerrainFormat::Json) bytes = without_mark(bytes);
     auto terrain = reader_of(format).read(bytes, options, limits);
     if (terrain) terrain = settled(*std::move(terrain), format, options, limits);
     if (terrain) terrain = api::triangulated(*std::move(terrain), limits);

@@ -10,6 +10,7 @@
 #include "api/formats/base64.hpp"
 #include "api/formats/glb_chunks.hpp"
 #include "api/formats/json_reader.hpp"
+#include "api/formats/json_size.hpp"
 
 namespace tinsmith::api {
 
@@ -17,8 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostValues = 4'000'000;  ///< of the document, any kind
-constexpr int kMostDepth = 100;
+constexpr JsonLimits kDocument{4'000'000, 100};
 constexpr std::size_t kMostIndex = std::size_t{1} << 40;  ///< no count or offset is beyond
 
 /// Extensions that change nothing about where the triangles are; a trailing star: all such.
@@ -40,11 +40,6 @@ bool is_harmless(std::string_view extension) {
         if (!known.ends_with('*')) return extension == known;
         return extension.starts_with(known.substr(0, known.size() - 1));
     });
-}
-
-std::size_t byte_of(const Json::exception& error) {
-    const auto* parse = dynamic_cast<const Json::parse_error*>(&error);
-    return parse == nullptr ? 0 : parse->byte;
 }
 
 class ModelReader {
@@ -78,26 +73,19 @@ class ModelReader {
     }
 
     bool parse(std::string_view text, Json& document) {
-        std::size_t values = 0;
-        bool too_much = false;
-        const auto watch = [&](int depth, Json::parse_event_t, Json&) {
-            if (++values > kMostValues || depth > kMostDepth) too_much = true;
-            if (too_much) throw Json::other_error::create(599, "stopped", nullptr);
-            return true;
-        };
-        try {
-            document = Json::parse(text.begin(), text.end(), watch);
-        } catch (const Json::exception& error) {
-            if (too_much)
+        const JsonSound seen = look_through_json(text, kDocument);
+        if (!seen.is_sound) {
+            if (seen.is_too_much)
                 fault(FaultKind::TooLarge, "GLTF_DOCUMENT",
-                      "The file's JSON is nested deeper than " + std::to_string(kMostDepth) +
-                          " or has more than " + std::to_string(kMostValues) + " values.");
+                      "The file's JSON is nested deeper than " + std::to_string(kDocument.depth) +
+                          " or has more than " + std::to_string(kDocument.values) + " values.");
             else
                 fault(FaultKind::Syntax, "GLTF_SYNTAX",
-                      "The file's JSON cannot be read at byte " + std::to_string(byte_of(error)) +
+                      "The file's JSON cannot be read at byte " + std::to_string(seen.wrong_byte) +
                           ".");
             return false;
         }
+        document = Json::parse(text.begin(), text.end());
         if (document.is_object()) return true;
         fault(FaultKind::Syntax, "GLTF_SYNTAX", "A glTF is a JSON object.");
         return false;

@@ -151,6 +151,14 @@ void read(std::string_view body, Reader& reader) {
         reader.stop(FaultKind::Syntax, {"JSON_SYNTAX", "The body is empty.", ""});
         return;
     }
+    // The library takes one for the end, whatever follows.
+    if (const std::size_t zero = body.find('\0'); zero != body.npos) {
+        reader.stop(FaultKind::Syntax, {"JSON_SYNTAX",
+                                        "The body is no JSON: at " + place(body, zero + 1) +
+                                            " there is a zero byte. JSON is text in UTF-8.",
+                                        ""});
+        return;
+    }
     Events events(body, reader);
     const char* const end = body.data() + body.size();
     nlohmann::json::sax_parse(Walker(body.data(), events.parser_place()),

@@ -184,7 +184,7 @@ class LandXmlReader {
     }
 
     void read_surface(const pugi::xml_node& surface) {
-        terrain_.name = std::string(surface.attribute("name").value()).substr(0, 200);
+        terrain_.name = text_in_utf8(surface.attribute("name").value(), kLongestName);
         const pugi::xml_node definition = child_of(surface, "Definition");
         for (const pugi::xml_node& list : definition.children())
             if (name_of(list) == "Pnts") read_points(list);
@@ -366,6 +366,7 @@ class LandXmlReader {
     }
 
     static constexpr std::size_t kMostNames = 10;
+    static constexpr std::size_t kLongestName = 200;
 
     std::string_view bytes_;
     const ReadLimits& limits_;

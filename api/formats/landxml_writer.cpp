@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/formats/landxml_writer.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <string_view>
 
 #include "api/edge_chains.hpp"
 #include "api/formats/json_writer.hpp"
@@ -9,10 +12,17 @@
 namespace tinsmith::api {
 namespace {
 
-/// Text inside an attribute. What XML 1.0 has no place for becomes a question mark.
+/// Text in UTF-8 inside an attribute. What XML 1.0 has no place for becomes a question mark.
 std::string attribute(std::string_view text) {
+    constexpr std::string_view kNoCharacters[] = {"\xEF\xBF\xBE", "\xEF\xBF\xBF"};
     std::string out;
-    for (const char c : text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (std::ranges::find(kNoCharacters, text.substr(i, 3)) != std::end(kNoCharacters)) {
+            out.push_back('?');
+            i += 2;
+            continue;
+        }
         switch (c) {
             case '&':
                 out += "&amp;";

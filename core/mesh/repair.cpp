@@ -22,6 +22,11 @@ using Cell = std::array<std::int64_t, 3>;
 
 constexpr std::uint32_t kNone = UINT32_MAX;
 
+std::uint64_t edge_between(std::uint32_t a, std::uint32_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    return std::uint64_t{low} << 32 | high;
+}
+
 struct CellHash {
     std::size_t operator()(const Cell& cell) const {
         std::uint64_t hash = 0;
@@ -118,6 +123,7 @@ class Mender {
         weld_vertices(weld);
         mend_triangles();
         drop_repeated();
+        drop_gone_constraints();
         drop_unused();
         return std::move(result_);
     }
@@ -186,6 +192,8 @@ class Mender {
             const Orientation way = orientation(plan(0), plan(1), plan(2));
             if (way == Orientation::Collinear) {
                 note(flat, t);
+                for (unsigned i = 0; i < 3; ++i)
+                    gone_.push_back(edge_between(triangle[i], triangle[(i + 1) % 3]));
                 continue;
             }
             if (way == Orientation::Clockwise) {
@@ -231,6 +239,27 @@ class Mender {
         keep(std::move(repair));
     }
 
+    /// A constraint along edges of flat triangles alone has no edge any more.
+    void drop_gone_constraints() {
+        if (gone_.empty() || data_.constraints.empty()) return;
+        std::sort(gone_.begin(), gone_.end());
+        std::vector<bool> stays(gone_.size(), false);
+        const auto place = [this](std::uint32_t a, std::uint32_t b) {
+            const std::uint64_t key = edge_between(a, b);
+            const auto found = std::lower_bound(gone_.begin(), gone_.end(), key);
+            const bool is_there = found != gone_.end() && *found == key;
+            return is_there ? static_cast<std::size_t>(found - gone_.begin()) : gone_.size();
+        };
+        for (const Triangle& t : data_.triangles)
+            for (unsigned i = 0; i < 3; ++i)
+                if (const std::size_t at = place(t[i], t[(i + 1) % 3]); at < gone_.size())
+                    stays[at] = true;
+        std::erase_if(data_.constraints, [&](const auto& c) {
+            const std::size_t at = place(c[0], c[1]);
+            return at < gone_.size() && !stays[at];
+        });
+    }
+
     /// Vertices that became others are gone as well, and were told of before.
     void drop_unused() {
         std::vector<bool> used(data_.vertices.size(), false);
@@ -260,6 +289,8 @@ class Mender {
     MeshData& data_;
     Repaired result_;
     std::vector<bool> is_welded_;
+    std::vector<std::uint64_t>
+        gone_;  ///< the edges of flat triangles; other triangles may have them
 };
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include "core/regions/region_border.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
@@ -15,6 +17,20 @@ namespace tinsmith::core {
 namespace {
 
 using Ring = std::vector<VertexId>;
+
+/// Where a vertex is. Beside a hole two vertices may be in one place, each of a fan of its own.
+using Place = std::array<std::uint64_t, 2>;
+
+struct PlaceHash {
+    std::size_t operator()(const Place& place) const {
+        std::uint64_t hash = place[0] * 0x9e3779b97f4a7c15ULL;
+        hash = (hash ^ hash >> 32 ^ place[1]) * 0x9e3779b97f4a7c15ULL;
+        return static_cast<std::size_t>(hash ^ hash >> 32);
+    }
+};
+
+/// By place: where in the open ring it is.
+using Places = std::unordered_map<Place, std::size_t, PlaceHash>;
 
 /// A vertex that is lowest of all turns outwards, and no simple ring is straight there.
 bool is_counter_clockwise(const Tin& tin, const Ring& ring) {
@@ -94,30 +110,36 @@ class BorderFinder {
         return next;
     }
 
-    /// Follows the border around and parts it wherever it comes to a vertex again.
+    Place place_of(VertexId v) const {
+        const Point2 p = tin_.plan(v);
+        // Both noughts are one.
+        return {std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0)};
+    }
+
+    /// Follows the border around and parts it wherever it comes to a place again.
     void walk(Side first) {
         BorderedPart& part = parts_[part_.value(first.triangle()) - 1];
         Ring open;
-        std::unordered_map<std::uint32_t, std::size_t> places;
+        Places places;
         Side side = first;
         do {
             walked_.insert(side.code);
             const VertexId v = tin_.origin(side);
-            if (const auto found = places.find(v.value); found != places.end())
+            const Place place = place_of(v);
+            if (const auto found = places.find(place); found != places.end())
                 close(part, open, places, found->second);
-            places.emplace(v.value, open.size());
+            places.emplace(place, open.size());
             open.push_back(v);
             side = after(side);
         } while (side != first);
         close(part, open, places, 0);
     }
 
-    void close(BorderedPart& part, Ring& open,
-               std::unordered_map<std::uint32_t, std::size_t>& places, std::size_t from) {
+    void close(BorderedPart& part, Ring& open, Places& places, std::size_t from) {
         const auto begin = open.begin() + static_cast<std::ptrdiff_t>(from);
         Ring ring(begin, open.end());
         for (const VertexId v : ring)
-            places.erase(v.value);
+            places.erase(place_of(v));
         open.erase(begin, open.end());
         if (is_counter_clockwise(tin_, ring)) {
             part.outer = std::move(ring);

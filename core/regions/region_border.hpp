@@ -17,10 +17,10 @@ struct BorderedPart {
 
 /// The borders of a set of triangles, by parts in the order of their first triangles.
 ///
-/// Laws: no ring has a vertex twice, so that each is a simple polygon in plan; rings may touch at
-/// vertices. Every side whose triangle is in the set and whose twin is not, or is none, is in one
-/// ring, once. Requires: no triangle is given twice.
-/// Cost: the triangles, and a hash search for each vertex of the border.
+/// Laws: no ring comes to a place twice, so that each is a simple polygon in plan; rings may touch
+/// at vertices. Every side whose triangle is in the set and whose twin is not, or is none, is in
+/// one ring, once. Requires: no triangle is given twice. Cost: the triangles, and a hash search for
+/// each vertex of the border.
 std::vector<BorderedPart> border_of(const Tin& tin, std::span<const TriangleId> triangles);
 
 }  // namespace tinsmith::core

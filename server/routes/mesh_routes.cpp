@@ -28,6 +28,8 @@ enum class MeshFormat { Glb, Json, Gltf, Obj, LandXml };
 /// In the order of the formats.
 constexpr std::array<std::string_view, 5> kMeshTypes{kGlb, kJson, kGltf, kObj, kXml};
 constexpr int kDone = 200;
+/// In bytes: what encoding one of these takes is worth giving back.
+constexpr std::size_t kLargeMesh = std::size_t{16} << 20;
 
 /// Meshes with full doubles have few options.
 constexpr std::array<std::string_view, 2> kJsonOptions{"version", "bbox"};
@@ -144,6 +146,7 @@ Response send(Services& services, const Session& session, const Request& request
         }
         const std::uint64_t of = std::get<0>(copy).version;
         Response response = write(std::get<0>(std::move(copy)));
+        if (session.mesh_bytes() >= kLargeMesh) give_back_memory();
         if (response.status == kDone) {
             return std::make_shared<const EncodedMesh>(EncodedMesh{of, std::move(response)});
         }

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include <malloc.h>
+
 #include "api/crs.hpp"
 #include "api/media_type.hpp"
 #include "api/problem.hpp"
@@ -264,6 +266,10 @@ std::optional<Response> refusal_of_memory(const Services& services, const Reques
     return refuse(request, api::ProblemType::OutOfMemory,
                   "All meshes together have passed the limit max_memory_bytes of " +
                       std::to_string(most) + ". DELETE sessions that are not needed.");
+}
+
+void give_back_memory() {
+    ::malloc_trim(0);
 }
 
 }  // namespace tinsmith::server

@@ -105,4 +105,8 @@ Step<BorrowedMemory> require_memory(Services& services, const Request& request, 
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request);
 
+/// The allocator keeps what large meshes and their copies leave behind, for each thread its own, a
+/// gigabyte easily; it gives that back to the system only when told to.
+void give_back_memory();
+
 }  // namespace tinsmith::server

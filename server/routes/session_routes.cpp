@@ -3,8 +3,6 @@
 #include <string>
 #include <utility>
 
-#include <malloc.h>
-
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
 #include "api/terrain_options.hpp"
@@ -161,9 +159,7 @@ Response delete_session(Services& services, const Request& request,
     }
     services.forget(*session);
     session.reset();
-    // The allocator keeps what large meshes leave behind, a gigabyte easily, and gives it back to
-    // the system only when told to.
-    ::malloc_trim(0);
+    give_back_memory();
     return ok(kJson, std::move(last));
 }
 

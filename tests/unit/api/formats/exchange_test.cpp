@@ -140,6 +140,8 @@ TEST(WriteLandXml, HasItsElementsInTheOrderOfTheSchema) {
         ASSERT_NE(found, std::string::npos) << next;
         at = found;
     }
+    EXPECT_NE(write_landxml({}, {"a\xEF\xBF\xBFz", "", "foot"}).find("name=\"a?z\""),
+              std::string::npos);
     EXPECT_NE(write_landxml({}, {"", "", "foot"}).find("linearUnit=\"foot\""), std::string::npos);
     EXPECT_EQ(write_landxml({}, {"", "", "metre"}).find("CoordinateSystem"), std::string::npos);
 }

@@ -301,6 +301,12 @@ TEST(GlbReader, RefusesBrokenContainers) {
     EXPECT_EQ(codes(bytes), "GLTF_SYNTAX");
     EXPECT_EQ(codes("[]"), "GLTF_SYNTAX");
     EXPECT_EQ(codes(std::string(100'000, '[')), "GLTF_DOCUMENT");
+    // In time that grows with the document: a list of so many objects took an hour once.
+    std::string many = R"({"asset": {"version": "2.0"}, "nodes": [{})";
+    for (int i = 0; i < 1'000'000; ++i)
+        many += ",{}";
+    EXPECT_EQ(codes(many + "]}"), "GLTF_INVALID/scenes");
+    EXPECT_EQ(codes(R"({"nodes": [)" + std::string(5'000'000, '0').append("]}")), "GLTF_SYNTAX");
 }
 
 TEST(GlbReader, HoldsWhatDracoPromisesAgainstTheBytes) {

@@ -67,6 +67,7 @@ TEST(JsonReader, NamesWhatIsWrongAndWhere) {
         {"{\"count\": Infinity}", FaultKind::Syntax, "JSON_SYNTAX", ""},
         {"{\"name\": \"\xff\"}", FaultKind::Syntax, "JSON_SYNTAX", ""},
         {"{\"name\": \"a\"} {}", FaultKind::Syntax, "JSON_SYNTAX", ""},
+        {std::string("{\"name\": \"a\"}\0{}", 16), FaultKind::Syntax, "JSON_SYNTAX", ""},
         {"[]", FaultKind::Invalid, "WRONG_TYPE", ""},
         {"{}", FaultKind::Invalid, "MEMBER_MISSING", ""},
         {R"({"name": 4})", FaultKind::Invalid, "WRONG_TYPE", "/name"},

@@ -53,6 +53,18 @@ TEST(LandXml, ReadsNorthingEastingElevationAndTurnsFacesUp) {
     EXPECT_EQ(read->vertex_place(3), "point \"d\"");
 }
 
+TEST(LandXml, KeepsNamesInUtf8WhateverTheBytesAre) {
+    const auto name = [](const std::string& given) {
+        return read_landxml(file(surface(kPoints, "<F>a b c</F>", given)), {})->name;
+    };
+    EXPECT_EQ(name("a\xC3\xA9z"), "a\xC3\xA9z");
+    EXPECT_EQ(name("a\xFFz\xC3"), "a?z?");
+    EXPECT_EQ(name("\xED\xA0\x80"), "???");  // half of a pair
+    std::string longest(199, 'a');
+    EXPECT_EQ(name(longest + "\xC3\xA9"), longest);
+    EXPECT_EQ(name(longest + "bc"), longest + "b");
+}
+
 TEST(LandXml, LeavesInvisibleFacesAndTheirPointsOut) {
     const auto read = read_landxml(file(surface(kPoints, "<F i='1'>a b c</F><F>a c d</F>")), {});
     ASSERT_TRUE(read);

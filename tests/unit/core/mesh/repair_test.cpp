@@ -124,6 +124,24 @@ TEST(Repair, KeepsConstraintsThatAreStillEdges) {
     EXPECT_FALSE(repaired.repairs.empty());
 }
 
+TEST(Repair, DropsConstraintsAlongEdgesOfFlatTrianglesAlone) {
+    // Two flat triangles share the edge 0-4, which a constraint runs along; a neighbour that is not
+    // flat has the edge 0-1.
+    MeshData mesh = square();
+    mesh.vertices.push_back({5, 0, 1});
+    mesh.vertices.push_back({7, 0, 1});
+    mesh.triangles.push_back({0, 4, 1});
+    mesh.triangles.push_back({0, 5, 4});
+    mesh.constraints = {{0, 4}, {1, 0}, {0, 2}};
+    mesh.triangles.push_back({0, 6, 4});
+    mesh.vertices.push_back({6, -5, 1});
+    mesh.triangles.back() = {5, 6, 4};
+    const Repaired repaired = repair_mesh(mesh, 0.0);
+    EXPECT_EQ(find(repaired, RepairKind::TrianglesFlat)->count, 2U);
+    EXPECT_EQ(mesh.constraints.size(), 2U);
+    EXPECT_EQ(mesh.constraints[0], (std::array<std::uint32_t, 2>{1, 0}));
+}
+
 TEST(Repair, FindsWeldsAcrossTheCellsOfItsGrid) {
     // Pairs all over the place, each 0.9 tolerances apart in some direction.
     MeshData mesh;

@@ -128,6 +128,34 @@ TEST(RegionBorder, RingsThatTouchAreApart) {
     expect_sound(tin, corner, parts);
 }
 
+TEST(RegionBorder, RingsThatTouchAreApartWhereAPlaceHasTwoVertices) {
+    // As `remove` leaves it: two holes that touch at the middle, which is a vertex of either side.
+    MeshData data = lattice(4).to_data();
+    const std::uint32_t middle = 12, other = 25;
+    data.vertices.push_back(data.vertices[middle]);
+    std::vector<std::array<std::uint32_t, 3>> kept;
+    for (std::uint32_t t = 0; t < data.triangles.size(); ++t) {
+        const std::uint32_t i = t / 2 % 4, j = t / 8;
+        if ((i == 1 && j == 1) || (i == 2 && j == 2)) continue;
+        auto corners = data.triangles[t];
+        if (i == 2 && j == 1) std::replace(corners.begin(), corners.end(), middle, other);
+        kept.push_back(corners);
+    }
+    data.triangles = std::move(kept);
+    const auto tin = build_tin(data);
+    ASSERT_TRUE(tin);
+    std::vector<TriangleId> all;
+    for (std::uint32_t t = 0; t < tin->triangle_count(); ++t)
+        all.push_back(TriangleId{t});
+    const auto parts = border_of(*tin, all);
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_EQ(parts[0].outer.size(), 16U);
+    ASSERT_EQ(parts[0].holes.size(), 2U);
+    EXPECT_EQ(parts[0].holes[0].size(), 4U);
+    EXPECT_EQ(parts[0].holes[1].size(), 4U);
+    expect_sound(*tin, all, parts);
+}
+
 TEST(RegionBorder, IsSoundForAnyTriangles) {
     const Tin tin = lattice(12);
     std::uint32_t state = 7;

@@ -53,6 +53,8 @@ TEST_F(TerrainRoutes, KnowFormatsByTheirFirstBytes) {
     EXPECT_EQ(terrain_format_of("mtllib x.mtl\n"), TerrainFormat::Obj);
     EXPECT_EQ(terrain_format_of(kLandXml), TerrainFormat::LandXml);
     EXPECT_EQ(terrain_format_of("\xEF\xBB\xBF\n<LandXML>"), TerrainFormat::LandXml);
+    EXPECT_EQ(terrain_format_of("\xEF\xBB\xBFncols 2\n"), TerrainFormat::AsciiGrid);
+    EXPECT_EQ(terrain_format_of("\xEF\xBB\xBF" + std::string(kObj)), TerrainFormat::Obj);
     EXPECT_EQ(terrain_format_of("glTF\2"), TerrainFormat::Glb);
     EXPECT_EQ(terrain_format_of(R"({"asset": {"version": "2.0"}})"), TerrainFormat::Glb);
     EXPECT_EQ(terrain_format_of("\n{ \"bufferViews\": []}"), TerrainFormat::Glb);
