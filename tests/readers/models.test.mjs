@@ -139,7 +139,7 @@ const REFUSED = [
   ['OBJ/spider.obj', OBJ, 422, 'TRIANGLE_FLAT TRIANGLE_CLOCKWISE', /\(line 1833\)/],
   ['OBJ/testline.obj', OBJ, 422, 'OBJ_EMPTY', /no face/],
   ['invalid/empty.obj', OBJ, 422, 'OBJ_EMPTY', /no face/],
-  ['invalid/malformed.obj', OBJ, 422, 'OBJ_INDEX', /^Line 23: "12" names a vertex that is not there: 8/],
+  ['invalid/malformed.obj', OBJ, 422, 'OBJ_INDEX OBJ_POLYGON', /^Line 23: "12" names a vertex that is not there: 8/],
   ['invalid/malformed2.obj', OBJ, 422, 'OBJ_FACE', /^Line 23:/],
   ['glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb', GLB, 422, 'TRIANGLE_CLOCKWISE TRIANGLE_FLAT', /\/meshes\/23\/primitives\/0/],
   ['glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb', GLB, 422, 'COORDINATE_OUT_OF_RANGE', /^Vertex 0 .*not finite/],
