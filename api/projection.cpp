@@ -148,6 +148,11 @@ NoPlace unfit_crs(const CrsFacts& facts) {
                              "system of the x and y."};
 }
 
+void silence_proj() {
+    // New contexts are copies of the default one.
+    proj_log_level(PJ_DEFAULT_CTX, PJ_LOG_NONE);
+}
+
 std::optional<CrsFacts> find_crs(std::string_view code) {
     const Context context = make_context();
     auto found = look_up(context.get(), code);

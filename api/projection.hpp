@@ -29,6 +29,10 @@ struct CrsFacts {
 /// May be called from several threads at once.
 std::optional<CrsFacts> find_crs(std::string_view code);
 
+/// PROJ writes no more to stderr when others use it with contexts of their own. To be called before
+/// they do.
+void silence_proj();
+
 /// "EPSG:32616 (WGS 84 / UTM zone 16N)"
 std::string crs_with_name(const CrsFacts& facts);
 

@@ -14,6 +14,8 @@
 #include <gdal_frmts.h>
 #include <ogr_srs_api.h>
 
+#include "api/projection.hpp"
+
 namespace tinsmith::api {
 
 namespace {
@@ -41,6 +43,7 @@ GdalScope::GdalScope() {
         GDALRegister_GTiff();
         GDALRegister_MEM();
         OSRSetPROJEnableNetwork(0);
+        silence_proj();
     });
     CPLPushErrorHandlerEx(&take, this);
     if (depth++ > 0) return;

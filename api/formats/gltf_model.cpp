@@ -194,6 +194,14 @@ class ModelReader {
         }
     }
 
+    /// A file that was cut short says so here, also where no view reaches its end.
+    void hold(std::size_t promised, std::size_t there, const std::string& pointer) {
+        if (promised > there)
+            invalid("It has " + std::to_string(there) + " bytes of the " +
+                        std::to_string(promised) + " that it promises.",
+                    pointer + "/byteLength");
+    }
+
     void read_buffers(const Json& document, std::optional<std::string_view> bin) {
         // Views into `decoded` stay where they are: it is filled before they are taken.
         std::vector<std::pair<std::size_t, std::size_t>> own;
@@ -202,9 +210,10 @@ class ModelReader {
             std::string_view& bytes = model_.buffers.emplace_back();
             const Json* uri = member(buffer, "uri");
             if (uri == nullptr || !uri->is_string()) {
-                if (model_.buffers.size() == 1 && bin) bytes = bin->substr(0, length);
                 // Others without bytes are there for clients that cannot decompress.
-                return;
+                if (model_.buffers.size() > 1 || !bin) return;
+                bytes = bin->substr(0, length);
+                return hold(length, bytes.size(), pointer);
             }
             const auto& name = uri->get_ref<const std::string&>();
             const std::size_t comma = name.find(',');
@@ -219,6 +228,7 @@ class ModelReader {
             }
             auto decoded = decode_base64(std::string_view(name).substr(comma + 1));
             if (!decoded) return invalid("This is no base64.", pointer + "/uri");
+            hold(length, decoded->size(), pointer);
             own.emplace_back(model_.buffers.size() - 1, model_.decoded.size());
             model_.decoded.push_back(std::move(*decoded));
         });

@@ -216,27 +216,41 @@ class ObjReader {
         if (corners_.size() < 3) return fault("OBJ_FACE", "A face has three corners or more.");
         if (corners_.size() == 3) return add(0, 1, 2);
         const std::size_t count = corners_.size();
+        // An upright face has no area either way: as it is, for the builder to name or to mend.
+        if (is_upright()) return add_fan(0);
         const std::size_t tried = count <= kMostCornersTried ? count : 1;
-        for (std::size_t apex = 0; apex < tried; ++apex) {
-            if (!sees_all(apex)) continue;
-            for (std::size_t i = 1; i + 1 < count; ++i)
-                add(apex, (apex + i) % count, (apex + i + 1) % count);
-            return;
-        }
+        for (std::size_t apex = 0; apex < tried; ++apex)
+            if (sees_all(apex)) return add_fan(apex);
         fault("OBJ_POLYGON", "The face of " + std::to_string(count) +
                                  " corners is not convex in plan: cut it into triangles first.");
     }
 
+    void add_fan(std::size_t apex) {
+        const std::size_t count = corners_.size();
+        for (std::size_t i = 1; i + 1 < count; ++i)
+            add(apex, (apex + i) % count, (apex + i + 1) % count);
+    }
+
+    /// How the triangle of a corner with two after it turns; they are counted around the face.
+    core::Orientation turn(std::size_t apex, std::size_t i) const {
+        const auto plan = [&](std::size_t k) {
+            return terrain_.mesh.vertices[corners_[(apex + k) % corners_.size()]].plan();
+        };
+        return core::orientation(plan(0), plan(i), plan(i + 1));
+    }
+
+    bool is_upright() const {
+        for (std::size_t i = 1; i + 1 < corners_.size(); ++i)
+            if (turn(0, i) != core::Orientation::Collinear) return false;
+        return true;
+    }
+
     /// Whether the triangles about that corner all turn the same way: then they do not overlap.
     bool sees_all(std::size_t apex) const {
-        const std::size_t count = corners_.size();
-        const auto plan = [&](std::size_t i) {
-            return terrain_.mesh.vertices[corners_[(apex + i) % count]].plan();
-        };
-        const core::Orientation way = core::orientation(plan(0), plan(1), plan(2));
+        const core::Orientation way = turn(apex, 1);
         if (way == core::Orientation::Collinear) return false;
-        for (std::size_t i = 2; i + 1 < count; ++i)
-            if (core::orientation(plan(0), plan(i), plan(i + 1)) != way) return false;
+        for (std::size_t i = 2; i + 1 < corners_.size(); ++i)
+            if (turn(apex, i) != way) return false;
         return true;
     }
 

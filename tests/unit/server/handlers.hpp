@@ -24,7 +24,7 @@ inline constexpr const char* kParcel =
     R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]})";
 
 /// The routes as a client meets them, without a socket.
-class Handlers : public testing::Test {
+class Handlers : public ::testing::Test {
   protected:
     static Limits few_sessions() {
         Limits limits;

@@ -264,6 +264,19 @@ TEST(GeoTiff, TruncatedAnywhere) {
     }
 }
 
+/// PROJ has no unit of that code, and told so on stderr, where only the log belongs.
+TEST(GeoTiff, AUnitThatProjDoesNotKnowIsNoLineOnStderr) {
+    std::ifstream in(TINSMITH_SOURCE_DIR "/tests/fuzz/corpus/geotiff/unit_unknown_to_proj.tif",
+                     std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    ASSERT_FALSE(bytes.empty());
+    ::testing::internal::CaptureStderr();
+    const auto terrain = read_geotiff(bytes, {});
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+    ASSERT_FALSE(terrain.ok());
+    EXPECT_EQ(terrain.faults()[0].code, "COORDINATE_OUT_OF_RANGE");
+}
+
 TEST(GeoTiff, AnyByteChangedIsATerrainOrAFault) {
     const std::string whole = three_by_two().projected(32616).bytes();
     ReadLimits limits;

@@ -181,6 +181,7 @@ TEST(GlbReader, ReadsQuantizedPositions) {
                          d["bufferViews"][0]["byteStride"] = 8;
                          d["bufferViews"][0]["byteLength"] = 32;
                          d["bufferViews"][1]["byteOffset"] = 32;
+                         d["buffers"][0]["byteLength"] = 44;
                          d["nodes"][0]["scale"] = {4, 4, 4};
                      },
                      bytes_of(std::vector<std::int16_t>{0, 0, 0, 0, 32767, 0, 0, 0, 32767, 0,
@@ -239,12 +240,15 @@ TEST(GlbReader, ReadsJsonWithDataAndRefusesOtherFilesByName) {
         "data:application/octet-stream;base64,"
         "AAAAAAAAgD8AAAAAAACAQAAAAEAAAAAAAACAQAAAQEAAAIDAAAAAAAAAAAAAAAAAAAABAAIA";
     document["bufferViews"][1]["byteLength"] = 6;
+    document["buffers"][0]["byteLength"] = 54;
     const auto read = read_glb(document.dump(), {});
     ASSERT_TRUE(read) << read.faults().front().detail;
     EXPECT_EQ(read->mesh.triangles, (Triangles{{0, 1, 2}}));
     EXPECT_EQ(read->mesh.vertices[2], kSquare[2]);
     document["buffers"][0]["uri"] = "data:application/octet-stream;base64,AA*A";
     EXPECT_EQ(codes(document.dump()), "GLTF_INVALID/buffers/0/uri");
+    document["buffers"][0]["uri"] = "data:application/octet-stream;base64,AAAA";
+    EXPECT_EQ(codes(document.dump()), "GLTF_INVALID/buffers/0/byteLength");
     document["buffers"][0]["uri"] = "https://example.org/terrain.bin";
     const auto refused = read_glb(document.dump(), {});
     EXPECT_EQ(refused.faults()[0].code, "GLTF_URI");
@@ -270,6 +274,7 @@ TEST(GlbReader, HoldsEverySpanAgainstTheBytes) {
     EXPECT_EQ(with("/bufferViews/0/byteStride", 8), "GLTF_INVALID/accessors/0");
     EXPECT_EQ(with("/bufferViews/0/byteStride", 16), "GLTF_INVALID/accessors/0");
     EXPECT_EQ(with("/bufferViews/1/byteLength", 13), "GLTF_INVALID/bufferViews/1");
+    EXPECT_EQ(with("/buffers/0/byteLength", 61), "GLTF_INVALID/buffers/0/byteLength");
     EXPECT_EQ(with("/bufferViews/0/buffer", 1), "GLTF_INVALID/bufferViews/0");
     EXPECT_EQ(with("/nodes/0/mesh", 1), "GLTF_INVALID/nodes/0/mesh");
     EXPECT_EQ(with("/nodes/0/children", {0}), "GLTF_INVALID/nodes/0");

@@ -59,6 +59,9 @@ TEST(Obj, CutsFacesAboutACornerThatSeesAllOthers) {
     EXPECT_EQ(codes("v 0 0 0\nv 9 0 0\nv 9 3 0\nv 6 3 0\nv 6 1 0\nv 3 1 0\nv 3 3 0\nv 0 3 0\nf 1 2 "
                     "3 4 5 6 7 8"),
               "OBJ_POLYGON");
+    // Upright: without area from every corner, so as it is, for the builder to name or to mend.
+    EXPECT_EQ(read_obj("v 0 0 0\nv 4 0 0\nv 4 0 9\nv 0 0 9\nf 1 2 3 4", {})->mesh.triangles,
+              (Triangles{{0, 1, 2}, {0, 2, 3}}));
     // The other way round: as it is, for the builder to name.
     EXPECT_EQ(read_obj(std::string(kCorners) + "f 4 3 2 1", {})->mesh.triangles,
               (Triangles{{3, 2, 1}, {3, 1, 0}}));

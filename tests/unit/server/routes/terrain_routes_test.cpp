@@ -91,6 +91,16 @@ TEST_F(TerrainRoutes, RepairAndTellEachRepair) {
     EXPECT_EQ(body_of(sound)["repairs"], json::array());
 }
 
+TEST_F(TerrainRoutes, RepairLeavesUprightFacesOfAnObjOut) {
+    const std::string walled = std::string(kObj) + "v 0 0 -5\nv 10 0 -5\nf 2 1 5 6\n";
+    EXPECT_EQ(told(send("", "model/obj", walled)), "TRIANGLE_FLAT TRIANGLE_FLAT");
+    const auto made = send("?repair=true", "model/obj", walled);
+    ASSERT_EQ(made.status, 201) << made.body;
+    EXPECT_EQ(body_of(made)["triangles"], 2);
+    EXPECT_EQ(body_of(made)["repairs"][0],
+              json::parse(R"({"code": "TRIANGLES_FLAT", "count": 2, "indices": [2, 3]})"));
+}
+
 TEST_F(TerrainRoutes, TellWhatRepairCannotMendByTheNumbersGiven) {
     // The last triangle lies over the second; two before it are left out.
     const auto refused = send("?repair=true", "application/json", R"({"mesh": {
