@@ -249,6 +249,7 @@ viewTest('tells what is wrong, and marks where', {expected: REFUSED}, async (vie
   assert.equal((await client.session(id)).version, 1);
   const mark = view.page.locator('#overlay .mark').first();
   await mark.waitFor();
+  await view.page.waitForFunction(() => document.querySelector('#overlay .mark').style.transform);
   const fault = await view.state(() => window.tinsmith.app.problem.errors[0].coordinate);
   const near = await view.state(([x, y]) => {
     const {stage, app} = window.tinsmith;
