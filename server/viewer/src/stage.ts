@@ -113,10 +113,13 @@ export class Stage {
       const gl = this.renderer.getContext() as WebGL2RenderingContext;
       const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
       gl.flush();
+      const begin = performance.now();
       const look = () => {
         const done = fence === null || gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED;
         if (!done) { setTimeout(look, 4); return; }
         gl.deleteSync(fence);
+        // Who needs so long for one frame is spared animations, and views that move are drawn with less.
+        if (performance.now() - begin > 2 * SLOW_MS) this.wasSlow = true;
         resolve();
       };
       setTimeout(look, 0);
