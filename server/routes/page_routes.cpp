@@ -41,7 +41,7 @@ Response send(const Request& request, const PageFile& file, std::string caching)
     Response response = unmodified
                             ? *std::move(unmodified)
                             : ok(std::string(file.type), file.content).with("ETag", file.etag);
-    if (response.status < 400) response.with("Cache-Control", std::move(caching));
+    if (response.status == 200) response.with("Cache-Control", std::move(caching));
     return response;
 }
 

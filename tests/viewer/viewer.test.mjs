@@ -162,6 +162,36 @@ viewTest('edits the ground, undoes and redoes', {polygon: SQUARE}, async (view, 
   assert.equal((await client.json(`/v1/sessions/${id}/elevation?x=190&y=180`)).elevation, 120);
 });
 
+viewTest('draws after many edits what a fresh page draws', {polygon: SQUARE}, async (view, id) => {
+  await button(view, 'Facets').click();
+  for (const corner of [60, 150, 200]) {
+    await view.state((c) => {
+      const {draft} = window.tinsmith;
+      draft.begin('Polygon');
+      for (const [x, y] of [[c, c], [c + 90, c + 7], [c + 40, c + 95]]) draft.add(x, y);
+      draft.finish();
+    }, corner);
+    await button(view, 'Integrate').click();
+    await view.page.waitForFunction(() => window.tinsmith.draft.measured);
+    await view.rest();
+  }
+  await button(view, 'Undo').click();
+  await view.page.waitForFunction(() => window.tinsmith.app.session.version === 6);
+  await view.rest();
+  const still = async () => {
+    await view.state(() => { window.tinsmith.app.selected = null; window.tinsmith.app.tell('selection'); });
+    await view.page.waitForFunction(() => !window.tinsmith.view.regions.isGlowing);
+    await view.state(() => window.tinsmith.stage.drawn());
+    return view.pixels();
+  };
+  if (await button(view, 'Facets').getAttribute('aria-pressed') === 'true') await button(view, 'Facets').click();
+  const patched = await still();
+  await view.page.reload();
+  await view.rest();
+  assert.ok(patched === (await still()), 'the buffers that edits were written to give another picture');
+  assert.equal((await client.session(id)).polygons, 3);
+});
+
 viewTest('cuts a hole, and the buffers shrink with it', {polygon: SQUARE}, async (view, id) => {
   const before = await client.session(id);
   await view.page.locator('#tab-regions').click();
@@ -249,6 +279,7 @@ viewTest('tells what is wrong, and marks where', {expected: REFUSED}, async (vie
   assert.equal((await client.session(id)).version, 1);
   const mark = view.page.locator('#overlay .mark').first();
   await mark.waitFor();
+  await view.page.waitForFunction(() => document.querySelector('#overlay .mark').style.transform);
   const fault = await view.state(() => window.tinsmith.app.problem.errors[0].coordinate);
   const near = await view.state(([x, y]) => {
     const {stage, app} = window.tinsmith;

@@ -18,6 +18,15 @@ function outcodes(positions: ArrayLike<number>, count: number, m: number[]): Uin
   return codes;
 }
 
+/**
+ * Frees a geometry that draws from the ground's positions, and not these: they are the ground's, which
+ * would go on drawing from a buffer that edits do not reach any more.
+ */
+export function disposeBorrower(geometry: BufferGeometry) {
+  geometry.deleteAttribute('position');
+  geometry.dispose();
+}
+
 /** The edges of the triangles that are in view, unless these are too many. */
 export class Facets extends LineSegments {
   inView = 0;
@@ -41,7 +50,7 @@ export class Facets extends LineSegments {
       if ((codes[corners[3 * t]] & codes[corners[3 * t + 1]] & codes[corners[3 * t + 2]]) === 0) found.push(t);
     this.inView = found.length;
     this.visible = found.length > 0 && found.length <= MOST;
-    this.geometry.dispose();
+    disposeBorrower(this.geometry);
     this.geometry = new BufferGeometry();
     this.geometry.setAttribute('position', position);
     this.geometry.boundingSphere = new Sphere();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {BufferAttribute, BufferGeometry, Group, Mesh as Drawn, type ShaderMaterial, Sphere} from 'three';
 import type {App} from './app';
+import {disposeBorrower} from './facets';
 import {Lines, segmentsOf} from './lines';
 import {PATTERNS, regionMaterial} from './shaders';
 import type {TerrainView} from './terrain_view';
@@ -46,7 +47,7 @@ export class RegionsView {
   showFills = true;
   showLines = true;
 
-  constructor(private readonly app: App, private readonly draw: () => void) {
+  constructor(private readonly app: App, private readonly draw: () => void, private readonly isSlow: () => boolean) {
     this.group.add(this.constraints, this.chosen, this.glow);
     app.on(['selection', 'look'], () => { this.select(); });
   }
@@ -55,7 +56,7 @@ export class RegionsView {
   reset() {
     this.known.clear();
     this.glow.set([]);
-    for (const fill of this.fills.values()) { fill.removeFromParent(); fill.geometry.dispose(); fill.material.dispose(); }
+    for (const fill of this.fills.values()) { fill.removeFromParent(); disposeBorrower(fill.geometry); fill.material.dispose(); }
     this.fills.clear();
     this.constraints.set([]);
     this.chosen.set([]);
@@ -69,7 +70,7 @@ export class RegionsView {
   sync(terrain: TerrainView, exaggeration: number, pixel: number, isFirst: boolean) {
     const {app} = this;
     const {corners, origin} = app.mesh;
-    for (const fill of this.fills.values()) { fill.removeFromParent(); fill.geometry.dispose(); fill.material.dispose(); }
+    for (const fill of this.fills.values()) { fill.removeFromParent(); disposeBorrower(fill.geometry); fill.material.dispose(); }
     this.fills.clear();
     for (const region of app.regions) {
       const look = lookOf(region.polygon);
@@ -102,9 +103,13 @@ export class RegionsView {
     this.select();
   }
 
+  get isGlowing() {
+    return this.glow.visible;
+  }
+
   private startGlow(ends: number[]) {
     this.glow.set(ends);
-    const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    const calm = this.isSlow() || matchMedia('(prefers-reduced-motion: reduce)').matches;
     const begin = performance.now();
     const token = ++this.glowing;
     const step = () => {

@@ -108,7 +108,22 @@ export class Stage {
   /** Resolves when what is now in the scene has been drawn. */
   drawn(): Promise<void> {
     this.invalidate();
-    return new Promise((resolve) => requestAnimationFrame(() => { requestAnimationFrame(() => { resolve(); }); }));
+    return new Promise((resolve) => requestAnimationFrame(() => {
+      // The commands are sent by now; the fence tells when they have been carried out.
+      const gl = this.renderer.getContext() as WebGL2RenderingContext;
+      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      gl.flush();
+      const begin = performance.now();
+      const look = () => {
+        const done = fence === null || gl.isContextLost() || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED;
+        if (!done) { setTimeout(look, 4); return; }
+        gl.deleteSync(fence);
+        // Who needs so long for one frame is spared animations, and views that move are drawn with less.
+        if (performance.now() - begin > 2 * SLOW_MS) this.wasSlow = true;
+        resolve();
+      };
+      setTimeout(look, 0);
+    }));
   }
 
   private draw(now: number) {

@@ -31,7 +31,7 @@ export class View {
   private isFresh = true;
 
   constructor(private readonly app: App, private readonly draft: Draft, readonly stage: Stage) {
-    this.regions = new RegionsView(app, () => { stage.invalidate(); });
+    this.regions = new RegionsView(app, () => { stage.invalidate(); }, () => stage.wasSlow);
     stage.world.add(this.regions.group, this.sketch, this.band, this.section, this.under);
     stage.onRest = () => { this.showFacets(); };
     stage.onEconomy = (economy) => {

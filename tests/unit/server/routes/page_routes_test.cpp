@@ -74,7 +74,8 @@ TEST_F(PageRoutes, SendItsFilesForGood) {
     EXPECT_EQ(header(script, "Content-Encoding"), "gzip");
     EXPECT_EQ(header(script, "Cache-Control"), "public, max-age=31536000, immutable");
     const Response again =
-        file("GET", "/viewer/main-0123.js", {{"if-none-match", header(script, "ETag")}});
+        file("GET", "/viewer/main-0123.js",
+             {{"accept-encoding", "gzip"}, {"if-none-match", header(script, "ETag")}});
     EXPECT_EQ(again.status, 304);
     EXPECT_EQ(again.body, "");
     EXPECT_EQ(file("POST", "/viewer/main-0123.js").status, 405);
