@@ -192,7 +192,8 @@ TEST_F(Service, RefusesBadTerrains) {
     EXPECT_NE(answer.body.find("/name"), std::string::npos);
     expect_problem(ask(port(), "POST", "/v1/sessions", {kJson}, "not json"), 400);
     expect_problem(ask(port(), "POST", "/v1/sessions", {"Content-Type: image/tiff"}, "II*"), 400);
-    expect_problem(ask(port(), "POST", "/v1/sessions", {"Content-Type: application/pdf"}, "1,2,3"), 415);
+    expect_problem(ask(port(), "POST", "/v1/sessions", {"Content-Type: application/pdf"}, "1,2,3"),
+                   415);
     expect_healthy();
 }
 
