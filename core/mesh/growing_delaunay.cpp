@@ -10,10 +10,10 @@ namespace tinsmith::core {
 
 namespace {
 
-constexpr unsigned next_of(unsigned i) {
+constexpr unsigned next_corner(unsigned i) {
     return i == 2 ? 0 : i + 1;
 }
-constexpr unsigned previous_of(unsigned i) {
+constexpr unsigned previous_corner(unsigned i) {
     return i == 0 ? 2 : i - 1;
 }
 constexpr std::uint32_t next_side(std::uint32_t side) {
@@ -63,11 +63,11 @@ std::uint32_t GrowingDelaunay::find(Point2 p) const {
         std::uint32_t beyond = UINT32_MAX;
         if (entered == 3) {
             for (unsigned i = 0; i < 3 && beyond == UINT32_MAX; ++i)
-                if (is_right(points_[triangle.vertices[i]], points_[triangle.vertices[next_of(i)]],
-                             p))
+                if (is_right(points_[triangle.vertices[i]],
+                             points_[triangle.vertices[next_corner(i)]], p))
                     beyond = triangle.twins[i];
         } else {
-            const unsigned first = next_of(entered), second = previous_of(entered);
+            const unsigned first = next_corner(entered), second = previous_corner(entered);
             const Point2 apex = points_[triangle.vertices[second]];
             if (is_right(points_[triangle.vertices[first]], apex, p))
                 beyond = triangle.twins[first];

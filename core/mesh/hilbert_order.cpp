@@ -17,11 +17,11 @@ constexpr double kCells = 65536.0;
 ///
 ///     column, row of a quadrant:   01 11
 ///                                  00 10
-struct Turn {
+struct Frame {
     std::array<std::uint8_t, 4> place;  ///< by quadrant 2 * column + row: the when of it
     std::array<std::uint8_t, 4> next;   ///< by quadrant: the turn within it
 };
-constexpr std::array<Turn, 4> kTurns = {{
+constexpr std::array<Frame, 4> kTurns = {{
     {{0, 1, 3, 2}, {1, 0, 3, 0}},  // up, right, down
     {{0, 3, 1, 2}, {0, 2, 1, 1}},  // right, up, left
     {{2, 3, 1, 0}, {2, 1, 2, 3}},  // from the upper right corner: left ...

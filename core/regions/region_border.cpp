@@ -19,10 +19,10 @@ namespace {
 using Ring = std::vector<VertexId>;
 
 /// Where a vertex is. Beside a hole two vertices may be in one place, each of a fan of its own.
-using Place = std::array<std::uint64_t, 2>;
+using PlanKey = std::array<std::uint64_t, 2>;
 
-struct PlaceHash {
-    std::size_t operator()(const Place& place) const {
+struct PlanHash {
+    std::size_t operator()(const PlanKey& place) const {
         std::uint64_t hash = place[0] * 0x9e3779b97f4a7c15ULL;
         hash = (hash ^ hash >> 32 ^ place[1]) * 0x9e3779b97f4a7c15ULL;
         return static_cast<std::size_t>(hash ^ hash >> 32);
@@ -30,7 +30,7 @@ struct PlaceHash {
 };
 
 /// By place: where in the open ring it is.
-using Places = std::unordered_map<Place, std::size_t, PlaceHash>;
+using RingPlaces = std::unordered_map<PlanKey, std::size_t, PlanHash>;
 
 /// A vertex that is lowest of all turns outwards, and no simple ring is straight there.
 bool is_counter_clockwise(const Tin& tin, const Ring& ring) {
@@ -110,7 +110,7 @@ class BorderFinder {
         return next;
     }
 
-    Place place_of(VertexId v) const {
+    PlanKey place_of(VertexId v) const {
         const Point2 p = tin_.plan(v);
         // Both noughts are one.
         return {std::bit_cast<std::uint64_t>(p.x + 0.0), std::bit_cast<std::uint64_t>(p.y + 0.0)};
@@ -120,12 +120,12 @@ class BorderFinder {
     void walk(Side first) {
         BorderedPart& part = parts_[part_.value(first.triangle()) - 1];
         Ring open;
-        Places places;
+        RingPlaces places;
         Side side = first;
         do {
             walked_.insert(side.code);
             const VertexId v = tin_.origin(side);
-            const Place place = place_of(v);
+            const PlanKey place = place_of(v);
             if (const auto found = places.find(place); found != places.end())
                 close(part, open, places, found->second);
             places.emplace(place, open.size());
@@ -135,7 +135,7 @@ class BorderFinder {
         close(part, open, places, 0);
     }
 
-    void close(BorderedPart& part, Ring& open, Places& places, std::size_t from) {
+    void close(BorderedPart& part, Ring& open, RingPlaces& places, std::size_t from) {
         const auto begin = open.begin() + static_cast<std::ptrdiff_t>(from);
         Ring ring(begin, open.end());
         for (const VertexId v : ring)
