@@ -156,7 +156,7 @@ part_sanitizers() {
     build asan-ubsan && run_ctest asan-ubsan --label-exclude '^arch$'
     # Threads meet in the server only. GCC 12's runtime cannot place its shadow under the widest
     # address randomization that kernels offer, so that is off for these tests where allowed.
-    if build tsan; then
+    if build tsan unit_server e2e; then
         setarch --addr-no-randomize true 2>/dev/null && launcher=(setarch --addr-no-randomize)
         run_ctest tsan --label-regex '^(unit_server|e2e.*)$'
         launcher=()
