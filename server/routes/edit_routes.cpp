@@ -92,8 +92,11 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     if (!asked) {
         return refuse(request, api::problem_of_faults(asked.kind(), std::move(asked.faults())));
     }
-    const auto memory =
-        require_memory(services, request, wishes.dry_run ? session.mesh_bytes() : 0);
+    const bool as_mesh = kAnswerTypes[wishes.type] == kGlb || kAnswerTypes[wishes.type] == kGltf;
+    const std::size_t mesh_bytes = session.mesh_bytes();
+    const auto memory = require_memory(
+        services, request,
+        (wishes.dry_run ? mesh_bytes : 0) + (as_mesh ? bytes_to_encode(mesh_bytes) : 0));
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
 
     auto made = make_edit(session, *asked, services.limits, services.stopping);
@@ -102,7 +105,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     auto& edit = std::get<PendingEdit>(made);
     begin_stage(0.8);
     edit.dry_run = wishes.dry_run;
-    edit.want_mesh = kAnswerTypes[wishes.type] == kGlb || kAnswerTypes[wishes.type] == kGltf;
+    edit.want_mesh = as_mesh;
     edit.want_delta = kAnswerTypes[wishes.type] == kDelta;
     edit.expected_version = wishes.expected_version;
     const auto outcome = session.edit(std::move(edit));

@@ -201,7 +201,9 @@ std::optional<Response> refusal_of_dry_regions(const Request& request, bool dry_
 Response integrate(Services& services, const Request& request, LoadedTerrain terrain,
                    PolygonWork work, std::size_t type, const api::MeshOptions& options) {
     if (auto refusal = refusal_of_dry_regions(request, work.edit.dry_run, options)) return *refusal;
-    const auto memory = require_memory(services, request, terrain.tin.memory_bytes());
+    const std::size_t mesh_bytes = terrain.tin.memory_bytes();
+    const auto memory = require_memory(services, request,
+                                       mesh_bytes + (type != 0 ? bytes_to_encode(mesh_bytes) : 0));
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     work.edit.want_mesh = type != 0;
     begin_stage(0.8);

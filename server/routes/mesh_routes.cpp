@@ -108,17 +108,23 @@ Step<std::optional<std::uint64_t>> require_version(const Request& request, const
     return version;
 }
 
-/// A copy of the mesh as it is now or was, or why there is none.
-Step<MeshGround> copy_ground(Services& services, const Session& session, const Request& request,
-                             std::optional<std::uint64_t> version, bool regions) {
-    std::size_t bytes = version ? session.mesh_bytes_since(*version) : 0;
+/// Memory for a copy of the mesh and all that is made of it, to be held until the answer is there.
+Step<BorrowedMemory> require_memory_to_encode(Services& services, const Session& session,
+                                              const Request& request,
+                                              std::optional<std::uint64_t> version, bool regions) {
+    const std::size_t of_mesh = version ? session.mesh_bytes_since(*version) : session.mesh_bytes();
+    std::size_t bytes = bytes_to_encode(of_mesh) + (version ? of_mesh : 0);
     if (regions) {
         bytes += session.mesh_bytes() +
                  session.look([](const core::Tin& tin, const std::vector<Polygon>& polygons,
                                  std::uint64_t) { return region_bytes(tin, polygons); });
     }
-    const auto memory = require_memory(services, request, bytes);
-    if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
+    return require_memory(services, request, bytes);
+}
+
+/// A copy of the mesh as it is now or was, or why there is none.
+Step<MeshGround> copy_ground(Services& services, const Session& session, const Request& request,
+                             std::optional<std::uint64_t> version, bool regions) {
     if (!version) return ground_now(session, regions);
     const auto limits = rerun_limits(services.limits, services.stopping);
     const auto outcome = session.state_at(*version, limits);
@@ -139,6 +145,12 @@ Response send(Services& services, const Session& session, const Request& request
     std::optional<Response> refusal;
     const std::string& birth = session.facts().birth;
     const auto encode = [&]() -> MeshCache::Found {
+        const auto memory =
+            require_memory_to_encode(services, session, request, std::get<0>(asked), regions);
+        if (const auto* none = std::get_if<Response>(&memory)) {
+            refusal = *none;
+            return nullptr;
+        }
         auto copy = copy_ground(services, session, request, std::get<0>(asked), regions);
         if (auto* none = std::get_if<Response>(&copy)) {
             refusal = std::move(*none);

@@ -87,7 +87,10 @@ Response integrate_polygons(Services& services, const Request& request,
     if (dry_run && as_delta) {
         return refuse_delta_of_dry_run(request);
     }
-    const auto memory = require_memory(services, request, dry_run ? session.mesh_bytes() : 0);
+    const std::size_t mesh_bytes = session.mesh_bytes();
+    const auto memory =
+        require_memory(services, request,
+                       (dry_run ? mesh_bytes : 0) + (as_mesh ? bytes_to_encode(mesh_bytes) : 0));
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     if (!dry_run) {
         if (auto refusal = refusal_of_blind_edit(services, request, session)) return *refusal;

@@ -102,6 +102,12 @@ std::string text_of(double value);
 /// Memory for copies of meshes, or 507.
 Step<BorrowedMemory> require_memory(Services& services, const Request& request, std::size_t bytes);
 
+/// About what a copy of a mesh, its encoding and the answer take together, beside the mesh itself,
+/// at most: of every format the dearest, as measured with a million triangles.
+constexpr std::size_t bytes_to_encode(std::size_t mesh_bytes) {
+    return 5 * mesh_bytes;
+}
+
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(const Services& services, const Request& request);
 

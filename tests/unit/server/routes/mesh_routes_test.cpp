@@ -144,5 +144,22 @@ TEST_F(MeshRoutes, SayTheSystemInLandXml) {
     EXPECT_NE(text.find("<Surface name=\"Square\">"), std::string::npos);
 }
 
+TEST_F(MeshRoutes, CountTheMemoryOfCopiesAndEncodings) {
+    const std::size_t free =
+        services.limits.max_memory_bytes - services.sessions.memory_bytes() - 1000;
+    auto all = services.sessions.borrow(free);
+    ASSERT_TRUE(all);
+    for (const char* path : {".glb", ".json", ".obj", ".xml"})
+        EXPECT_EQ(ask("GET", mesh + path).status, 507) << path;
+    const std::string made = header(ask("GET", session), "ETag");
+    const Response edited =
+        ask("POST", session + "/polygons",
+            {{"content-type", "application/geo+json"}, {"accept", "model/gltf-binary"}}, kParcel);
+    EXPECT_EQ(edited.status, 507) << edited.body;
+    EXPECT_EQ(header(ask("GET", session), "ETag"), made);  // refused before it was done
+    all.reset();
+    EXPECT_EQ(ask("GET", mesh + ".glb").status, 200);
+}
+
 }  // namespace
 }  // namespace tinsmith::server
