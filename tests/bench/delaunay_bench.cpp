@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The core's Delaunay triangulation against CGAL's with its spatial sort, on the same points, in
 // one run: README.md in this folder says what is compared and what came out. One thread.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <malloc.h>
-#include <time.h>
-
 #include "core/mesh/delaunay.hpp"
+#include "tests/bench/timing.hpp"
 #include "tests/cgal/bundled_data.hpp"
 #include "tests/cgal/delaunay_mesh.hpp"
 #include "tests/support/point_clouds.hpp"
@@ -27,12 +23,6 @@ constexpr const char* kUsage =
     "  large    5,000,000 points (needs 2 GB)\n"
     "  ours     Tinsmith alone, 1,000,000 scattered points, for `perf record`\n"
     "  smoke    small clouds of every sort; fails where the counts of triangles differ\n";
-
-double now_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 using Points = std::vector<core::Point3>;
 
@@ -53,22 +43,6 @@ Timed timed(std::size_t (*count)(const Points&), const Points& points) {
     return {now_ms() - start, triangles};
 }
 
-double at_share(std::vector<double> values, std::size_t quarters) {
-    std::ranges::sort(values);
-    return values[std::min(values.size() - 1, values.size() * quarters / 4)];
-}
-
-/// "1.62 (1.58-1.66)": the median of the pairs' ratios and the middle half of them.
-std::string ratio(const std::vector<double>& theirs, const std::vector<double>& ours) {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < ours.size(); ++i)
-        ratios.push_back(theirs[i] / ours[i]);
-    char text[64];
-    std::snprintf(text, sizeof text, "%.2f (%.2f-%.2f)", at_share(ratios, 2), at_share(ratios, 1),
-                  at_share(ratios, 3));
-    return text;
-}
-
 /// The three in turn, each run after a first one that warms up.
 void compare(const std::string& name, const Points& points, int runs) {
     std::vector<double> ours, bare, indexed;
@@ -85,9 +59,9 @@ void compare(const std::string& name, const Points& points, int runs) {
         indexed.push_back(with_indices.ms);
     }
     std::printf("| %s | %zu | %.1f | %.1f | %.1f | %.0f | %s | %s |\n", name.c_str(), points.size(),
-                at_share(ours, 2), at_share(bare, 2), at_share(indexed, 2),
-                at_share(ours, 2) * 1e6 / static_cast<double>(points.size()),
-                ratio(bare, ours).c_str(), ratio(indexed, ours).c_str());
+                median(ours), median(bare), median(indexed),
+                median(ours) * 1e6 / static_cast<double>(points.size()), ratio(bare, ours).c_str(),
+                ratio(indexed, ours).c_str());
     std::fflush(stdout);
 }
 
@@ -136,14 +110,6 @@ int run(const std::string& part, int runs) {
 }  // namespace tinsmith::bench
 
 int main(int count, char** arguments) {
-    // Freed memory is kept, as in a process that has run for a while, for all sides alike.
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, -1);
-    try {
-        const int runs = count > 2 ? std::atoi(arguments[2]) : 9;
-        return tinsmith::bench::run(count > 1 ? arguments[1] : "", runs < 1 ? 1 : runs);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "delaunay_bench: %s\n", error.what());
-        return EXIT_FAILURE;
-    }
+    return tinsmith::bench::run_program("delaunay_bench", count, arguments, 9,
+                                        tinsmith::bench::run);
 }

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/paired_runs.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
-#include <time.h>
-
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
+#include "tests/bench/timing.hpp"
 #include "tests/cgal/bundled_data.hpp"
 
 namespace tinsmith::bench {
@@ -42,18 +40,12 @@ double timed_insert(cgal::Peer& peer, const std::vector<cgal::Polyline>& paths) 
     return now_ms() - start;
 }
 
-/// "0.41 (0.38-0.44)": the median of the pairs' ratios and the middle half of them. Of each turn's
-/// two runs of `ours` the one of that number stands beside the peer's.
-std::string ratio(const std::vector<double>& ours, const std::vector<double>& peer,
-                  std::size_t number) {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < peer.size(); ++i)
-        ratios.push_back(ours[2 * i + number] / peer[i]);
-    std::ranges::sort(ratios);
-    char text[64];
-    std::snprintf(text, sizeof text, "%.2f (%.2f-%.2f)", median(ratios), ratios[ratios.size() / 4],
-                  ratios[ratios.size() * 3 / 4]);
-    return text;
+/// Of each turn's two runs of `ours` the one of that number, which stands beside a peer's.
+std::vector<double> of_turns(const std::vector<double>& ours, std::size_t number) {
+    std::vector<double> runs;
+    for (std::size_t i = number; i < ours.size(); i += 2)
+        runs.push_back(ours[i]);
+    return runs;
 }
 
 std::string times(const std::vector<double>& values) {
@@ -63,21 +55,6 @@ std::string times(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-double now_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    return values[values.size() / 2];
-}
-
-double least(const std::vector<double>& values) {
-    return *std::ranges::min_element(values);
-}
 
 Bases::Bases(const core::MeshData& mesh)
     : tin(built(mesh)),
@@ -131,7 +108,8 @@ void print_row(const std::string& mesh, const std::string& polygon, std::size_t 
         static_cast<unsigned long long>(runs.added_triangles), times(runs.ours).c_str(),
         times(runs.points).c_str(), times(runs.triangles).c_str(), runs.improving * 100.0,
         each(median(runs.ours), runs.added), each(median(runs.triangles), runs.added_triangles),
-        ratio(runs.ours, runs.points, 0).c_str(), ratio(runs.ours, runs.triangles, 1).c_str());
+        ratio(of_turns(runs.ours, 0), runs.points).c_str(),
+        ratio(of_turns(runs.ours, 1), runs.triangles).c_str());
     std::fflush(stdout);
 }
 

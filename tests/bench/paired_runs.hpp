@@ -14,12 +14,6 @@
 
 namespace tinsmith::bench {
 
-/// The thread's processor time: on a machine shared with others it is steadier than the wall's, and
-/// on an idle one the same, for nothing measured here waits.
-double now_ms();
-double median(std::vector<double> values);
-double least(const std::vector<double>& values);
-
 /// One mesh, as each of the three holds it.
 struct Bases {
     explicit Bases(const core::MeshData& mesh);

@@ -3,14 +3,13 @@
 // README.md in this folder says what is compared and what came out. One thread.
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <string>
 
-#include <malloc.h>
 #include <sys/resource.h>
 
 #include "tests/bench/paired_runs.hpp"
 #include "tests/bench/terrains.hpp"
+#include "tests/bench/timing.hpp"
 #include "tests/cgal/bundled_data.hpp"
 
 namespace tinsmith::bench {
@@ -117,15 +116,5 @@ int run(const std::string& part, int runs) {
 }  // namespace tinsmith::bench
 
 int main(int count, char** arguments) {
-    // Freed memory is kept, as in a process that has run for a while: else the system's handing out
-    // of fresh pages is what is timed, and of the three only Tinsmith grows into such.
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, -1);
-    try {
-        const int runs = count > 2 ? std::atoi(arguments[2]) : 15;
-        return tinsmith::bench::run(count > 1 ? arguments[1] : "", runs < 1 ? 1 : runs);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "peer_bench: %s\n", error.what());
-        return EXIT_FAILURE;
-    }
+    return tinsmith::bench::run_program("peer_bench", count, arguments, 15, tinsmith::bench::run);
 }
