@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -85,18 +87,23 @@ class TableBuilder {
     static std::optional<std::string> text_for_none(
         const std::vector<std::optional<std::string>>& values) {
         if (is_whole(values)) return std::nullopt;
+        std::unordered_set<std::string_view> taken;
+        for (const auto& value : values)
+            if (value) taken.insert(*value);
         std::string none;
-        // Ends: each round is about one more value.
-        while (std::ranges::find(values, none) != values.end())
-            none += none.empty() ? "null" : "_";
+        for (std::size_t n = 0; taken.contains(none); ++n)
+            none = n == 0 ? "null" : "null " + std::to_string(n);
         return none;
     }
 
     static std::optional<double> number_for_none(const std::vector<std::optional<double>>& values) {
         if (is_whole(values)) return std::nullopt;
+        std::unordered_set<double> taken;
+        for (const auto& value : values)
+            if (value) taken.insert(*value);
         double none = std::numeric_limits<double>::lowest();
-        while (std::ranges::find(values, none) != values.end())
-            none /= 2.0;
+        while (taken.contains(none))  // at most once for each row
+            none = std::nextafter(none, 0.0);
         return none;
     }
 

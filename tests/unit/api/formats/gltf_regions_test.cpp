@@ -2,6 +2,7 @@
 // Regions as primitives, with Draco, meshopt and none; what decoders see of their borders.
 #include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -229,6 +230,34 @@ TEST(GltfRegions, ColumnsHaveSoundTypesAndNames) {
     EXPECT_EQ(by_id["_1"]->values, "true");
     EXPECT_TRUE(by_id["big"]->is_text) << "no double holds it";
     EXPECT_EQ(by_id["big"]->values, "9007199254740993");
+}
+
+TEST(GltfRegions, FindAValueForNoneWhateverTheValues) {
+    RegionPartition regions;
+    std::string text = "null";
+    double number = std::numeric_limits<double>::lowest();
+    char properties[600];
+    for (int i = 0; i < 2200; ++i, number /= 2.0) {  // down to nought, with each on the way
+        std::snprintf(properties, sizeof properties, R"({"v": %.17e, "t": "null %d"})", number, i);
+        regions.features.push_back({"p" + std::to_string(i), "", properties, 0, 0});
+    }
+    regions.features.push_back({"p0", "", R"({"v": 0, "t": "null"})", 0, 0});
+    regions.features.push_back({"p1", "", R"({"t": ""})", 0, 0});
+    regions.features.push_back({"p2", "", R"({"v": 1})", 0, 0});
+    const PropertyTable table = property_table(regions);
+    for (const PropertyColumn& column : table.columns) {
+        if (column.name == "v") {
+            ASSERT_TRUE(column.no_number);
+            for (std::size_t row = 0; row + 2 < table.rows; ++row) {
+                double value = 0.0;
+                std::memcpy(&value, column.values.data() + row * sizeof value, sizeof value);
+                EXPECT_NE(value, *column.no_number) << row;
+            }
+        }
+        if (column.name == "t") {
+            EXPECT_EQ(column.no_text, "null 2200");
+        }
+    }
 }
 
 TEST(GltfRegions, AreBoundedInColumns) {
