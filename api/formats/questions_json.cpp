@@ -99,12 +99,36 @@ class AgainstObject : public Object {
     Version version_;
 };
 
+/// A system that a geometry names for itself, which volumes do not bring over.
+class NoSystem : public Value {
+  public:
+    void scalar(Reader& reader, const Scalar& value) override {
+        if (value.kind != Scalar::Kind::Null) refuse(reader);
+    }
+    json::Container* object(Reader& reader) override { return refuse(reader); }
+    json::Container* array(Reader& reader) override { return refuse(reader); }
+
+  protected:
+    std::string_view expected() const override { return "nothing"; }
+
+  private:
+    static json::Container* refuse(Reader& reader) {
+        reader.fault("CRS_NOT_TAKEN",
+                     "A volume is asked for in the session's system: leave this out, or bring the "
+                     "polygon over first.");
+        return nullptr;
+    }
+};
+
 /// A GeoJSON geometry with an inside.
 class AreaObject : public Object {
   public:
     AreaObject(std::optional<RequestedShape>& out, const ReadLimits& limits)
         : Object(Unknown::PassOver), out_(out), coordinates_value_(limits.max_polygon_vertices) {
-        expect({{"type", &type_value_, true}, {"coordinates", &coordinates_value_, true}});
+        expect({{"type", &type_value_, true},
+                {"coordinates", &coordinates_value_, true},
+                {"crs", &no_system_, false},
+                {"coordRefSys", &no_system_, false}});
     }
 
   protected:
@@ -131,6 +155,7 @@ class AreaObject : public Object {
     Coordinates coordinates_;
     json::Text type_value_{type_};
     CoordinatesReader coordinates_value_;
+    NoSystem no_system_;
 };
 
 /// A geometry, or the id of a polygon that the session has.

@@ -198,6 +198,18 @@ TEST_F(Questions, VolumeAgainstAnotherSession) {
     EXPECT_EQ(places(none), "/against/session");
 }
 
+TEST_F(Questions, RefuseAVolumeInAnotherSystem) {
+    for (const char* system : {R"("crs": {"type": "name", "properties": {"name": "EPSG:4326"}})",
+                               R"("coordRefSys": "EPSG:4326")"}) {
+        const Response refused =
+            post(make_session() + "/volume",
+                 std::string(R"({"against": {"elevation": 0}, "polygon": {"type": "Polygon", )") +
+                     system + R"(, "coordinates": [[[1,1],[2,1],[2,2],[1,1]]]}})");
+        EXPECT_EQ(refused.status, 422) << refused.body;
+        EXPECT_EQ(told(refused), "CRS_NOT_TAKEN");
+    }
+}
+
 TEST_F(Questions, RefuseVolumesWithAllFaultsAtOnce) {
     const auto codes = [&](const std::string& body) {
         const Response refused = post(session + "/volume", body);
