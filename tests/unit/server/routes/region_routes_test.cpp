@@ -137,6 +137,14 @@ TEST_F(ConstraintRoutes, ChainTheEdgesByTheirPolygons) {
         next = link.empty() ? "" : link.substr(1, link.find('>') - 1);
     }
     EXPECT_EQ(pages, list["features"]);
+
+    // Lines are in the order of one version: pages of two would lose some and repeat others.
+    const Response before = ask("GET", session + "/constraints?limit=1");
+    cut("[[[8,8],[9,8],[9,9],[8,9],[8,8]]]");
+    const std::string link = header(before, "Link");
+    const Response after = ask("GET", link.substr(1, link.find('>') - 1));
+    EXPECT_EQ(after.status, 400);
+    EXPECT_NE(after.body.find("CURSOR_OUTDATED"), std::string::npos) << after.body;
 }
 
 TEST_F(RegionRoutes, TellWhatOthersContain) {
