@@ -41,8 +41,10 @@ Response send(const Request& request, const PageFile& file, std::string caching)
     Response response = unmodified
                             ? *std::move(unmodified)
                             : ok(std::string(file.type), file.content).with("ETag", file.etag);
-    if (response.status == 200) response.with("Cache-Control", std::move(caching));
-    return response;
+    if (response.status != 200) return response;
+    return response.with("Cache-Control", std::move(caching))
+        .with("Content-Security-Policy", kPolicy)
+        .with("X-Content-Type-Options", "nosniff");
 }
 
 Response get_page_file(Services& services, const Request& request, const PathArguments& arguments) {
@@ -60,9 +62,7 @@ Response get_page_file(Services& services, const Request& request, const PathArg
 Response get_page(Services& services, const Request& request, const PathArguments&) {
     static const PageFile kNone = make_page_file(PageFiles::kIndex, std::string(kNoPage));
     const PageFile* const page = services.page.find(PageFiles::kIndex);
-    Response response = send(request, page == nullptr ? kNone : *page, "no-cache");
-    if (response.status < 300) response.with("Content-Security-Policy", kPolicy);
-    return response;
+    return send(request, page == nullptr ? kNone : *page, "no-cache");
 }
 
 std::vector<Route> make_page_routes(Services& services) {

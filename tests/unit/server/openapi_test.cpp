@@ -181,8 +181,8 @@ TEST_F(OpenApi, HasExactlyTheHeadersThatPagesMayRead) {
     for (std::string name; std::getline(list >> std::ws, name, ',');)
         wanted.insert(name);
     // Browsers give these to pages anyway, or act on them by themselves.
-    for (const char* name :
-         {"Vary", "Content-Encoding", "Content-Security-Policy", "Cache-Control"})
+    for (const char* name : {"Vary", "Content-Encoding", "Content-Security-Policy", "Cache-Control",
+                             "X-Content-Type-Options"})
         described.erase(name);
     EXPECT_EQ(differences(wanted, described), "");
 }

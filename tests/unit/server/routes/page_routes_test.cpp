@@ -73,6 +73,8 @@ TEST_F(PageRoutes, SendItsFilesForGood) {
     EXPECT_EQ(script.content_type, "text/javascript; charset=utf-8");
     EXPECT_EQ(header(script, "Content-Encoding"), "gzip");
     EXPECT_EQ(header(script, "Cache-Control"), "public, max-age=31536000, immutable");
+    EXPECT_EQ(header(script, "X-Content-Type-Options"), "nosniff");
+    EXPECT_EQ(header(script, "Content-Security-Policy").substr(0, 18), "default-src 'none'");
     const Response again =
         file("GET", "/viewer/main-0123.js",
              {{"accept-encoding", "gzip"}, {"if-none-match", header(script, "ETag")}});
