@@ -49,6 +49,8 @@ export class Compare {
   /** In the axes of the session, relative to the origin of the mesh on the screen. */
   private taken(scene: Group): Group {
     const {origin} = this.app.mesh;
+    // A glTF is in metres, whatever the session's unit.
+    const scale = 1 / ((scene.userData.unit_to_metre as number | undefined) ?? 1);
     const group = new Group();
     scene.updateMatrixWorld(true);
     scene.traverse((object) => {
@@ -56,10 +58,12 @@ export class Compare {
       const shift = object.getWorldPosition(new Vector3());
       const geometry = object.geometry as BufferGeometry;
       const mesh = new Drawn(geometry, this.material);
-      mesh.position.set(shift.x - origin[0], shift.y - origin[1], shift.z - origin[2]);
+      mesh.position.set(shift.x * scale - origin[0], shift.y * scale - origin[1], shift.z * scale - origin[2]);
+      mesh.scale.setScalar(scale);
       mesh.frustumCulled = false;
       const facets = new Facets();
       facets.position.copy(mesh.position);
+      facets.scale.copy(mesh.scale);
       group.add(mesh, facets);
     });
     return group;
@@ -84,14 +88,14 @@ export class Compare {
     const mesh = new Mesh();
     mesh.positions = new Float64Array(parts.reduce((sum, part) => sum + 3 * part.geometry.getAttribute('position').count, 0));
     mesh.corners = new Uint32Array(parts.reduce((sum, part) => sum + part.geometry.getIndex()!.count, 0));
-    for (const {geometry, position} of parts) {
+    for (const {geometry, position, scale} of parts) {
       const from = geometry.getAttribute('position');
       const index = geometry.getIndex()!;
       for (let i = 0; i < index.count; ++i) mesh.corners[3 * mesh.triangleCount + i] = index.getX(i) + mesh.vertexCount;
       for (let i = 0, at = 3 * mesh.vertexCount; i < from.count; ++i) {
-        mesh.positions[at++] = from.getX(i) + position.x + origin[0];
-        mesh.positions[at++] = from.getY(i) + position.y + origin[1];
-        mesh.positions[at++] = from.getZ(i) + position.z + origin[2];
+        mesh.positions[at++] = from.getX(i) * scale.x + position.x + origin[0];
+        mesh.positions[at++] = from.getY(i) * scale.y + position.y + origin[1];
+        mesh.positions[at++] = from.getZ(i) * scale.z + position.z + origin[2];
       }
       mesh.vertexCount += from.count;
       mesh.triangleCount += index.count / 3;

@@ -6,7 +6,6 @@ import type {App} from './app';
 const TYPES: Record<string, string> = {
   tif: 'image/tiff', tiff: 'image/tiff', json: 'application/json', glb: 'model/gltf-binary', gltf: 'model/gltf+json',
   xml: 'application/xml', obj: 'model/obj', csv: 'text/csv', xyz: 'text/csv', asc: 'text/plain', txt: 'text/plain',
-  gml: 'application/gml+xml', ply: 'model/ply', stl: 'model/stl',
 };
 export const TERRAIN_ENDINGS = Object.keys(TYPES).map((ending) => `.${ending}`).join(',');
 
@@ -29,7 +28,7 @@ export class Upload {
     for (let n = 2; taken.has(id); ++n) id = `${stem}-${n}`;
     const call: Call = {
       method: 'PUT', path: `/v1/sessions/${id}`, body: file, file: file.name,
-      headers: {'Content-Type': TYPES[ending] ?? file.type ?? 'application/octet-stream', Prefer: 'respond-async'},
+      headers: {'Content-Type': TYPES[ending] || file.type || 'application/octet-stream', Prefer: 'respond-async'},
     };
     this.app.note(call);
     try {
