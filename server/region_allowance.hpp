@@ -43,6 +43,22 @@ class RegionAllowance {
         return spend(kTrianglesOfAnId * count);
     }
 
+    /// Ids that an answer of one piece tells beside the triangles. False where there are too many
+    /// of them for that.
+    bool spend_told(std::size_t ids) {
+        constexpr std::size_t kMost = 500'000;
+        if (refused_) return false;
+        told_ += ids;
+        if (told_ > kMost)
+            refused_ = core::Error{core::ErrorCode::CrossingBudget,
+                                   "the polygons overlap so often that more than " +
+                                       std::to_string(kMost) +
+                                       " of their ids would be told; ask without regions, or for "
+                                       "the regions one by one",
+                                   {}};
+        return !refused_;
+    }
+
     bool goes_on() {
         if (!refused_ && limits_.cancelled && limits_.cancelled())
             refused_ = core::Error{core::ErrorCode::Cancelled, "the question was stopped", {}};
@@ -54,6 +70,7 @@ class RegionAllowance {
   private:
     const RegionLimits& limits_;
     std::uint64_t left_;
+    std::size_t told_ = 0;
     std::uint64_t spent_ = 0;  ///< since the last question
     std::optional<core::Error> refused_;
 };

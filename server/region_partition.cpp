@@ -24,6 +24,14 @@ PartitionGround partition_ground(const core::Tin& tin, std::span<const Polygon> 
     return ground;
 }
 
+std::size_t partition_bytes(const core::Tin& tin, std::span<const Polygon> all) {
+    constexpr std::size_t kParsed = 32;  // bytes for each of the text, as measured
+    std::size_t sum = region_bytes(tin, all);
+    for (const Polygon& polygon : all)
+        sum += kParsed * (polygon.origin().properties.size() + polygon.origin().client_id.size());
+    return sum;
+}
+
 core::Result<api::RegionPartition> find_partition(PartitionGround ground, std::string unit,
                                                   const RegionLimits& limits) {
     const core::Tin& tin = ground.regions.tin;
@@ -44,10 +52,12 @@ core::Result<api::RegionPartition> find_partition(PartitionGround ground, std::s
             polygon.winding);
         made.features[i].plan_area = region.plan_area;
         made.features[i].surface_area = region.surface_area;
+        if (!allowance.spend(region.triangles.size())) return *allowance.refused();
+        const std::size_t groups_before = groups.count();
         groups.begin(i);
         for (const core::TriangleId t : region.triangles)
             made.set_of[t.index()] = groups.with(made.set_of[t.index()]);
-        if (!allowance.spend(region.triangles.size())) return *allowance.refused();
+        if (!allowance.spend_ids(groups.count() - groups_before)) return *allowance.refused();
     }
     // The groups that are left, numbered by their first triangle; none of them is the first set.
     std::unordered_map<PolygonGroups::Id, std::uint32_t> numbers{{PolygonGroups::kNone, 0}};
@@ -55,7 +65,10 @@ core::Result<api::RegionPartition> find_partition(PartitionGround ground, std::s
         const auto [found, is_new] =
             numbers.try_emplace(group, static_cast<std::uint32_t>(made.sets.size()));
         if (is_new) {
-            if (!allowance.spend_ids(groups.size(group))) return *allowance.refused();
+            const std::size_t ids = groups.size(group);
+            // Each is told with its primitive, as text: that takes the room of many triangles.
+            if (!allowance.spend_ids(ids) || !allowance.spend_told(ids))
+                return *allowance.refused();
             std::vector<std::uint32_t> set;
             for (const std::size_t member : groups.members(group))
                 set.push_back(static_cast<std::uint32_t>(member));

@@ -22,6 +22,10 @@ struct PartitionGround {
     std::vector<api::RegionFeature> features;  ///< of those with an inside, areas yet to be found
 };
 
+/// About what a mesh with regions takes beside the mesh and its encoding, at most: finding them,
+/// and what features say of themselves, which is parsed and written again.
+std::size_t partition_bytes(const core::Tin& tin, std::span<const Polygon> all);
+
 /// Requires: `all` lie in `tin` as it is.
 PartitionGround partition_ground(const core::Tin& tin, std::span<const Polygon> all);
 

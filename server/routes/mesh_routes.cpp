@@ -117,7 +117,7 @@ Step<BorrowedMemory> require_memory_to_encode(Services& services, const Session&
     if (regions) {
         bytes += session.mesh_bytes() +
                  session.look([](const core::Tin& tin, const std::vector<Polygon>& polygons,
-                                 std::uint64_t) { return region_bytes(tin, polygons); });
+                                 std::uint64_t) { return partition_bytes(tin, polygons); });
     }
     return require_memory(services, request, bytes);
 }
@@ -165,7 +165,10 @@ Response send(Services& services, const Session& session, const Request& request
         refusal = std::move(response);
         return nullptr;
     };
-    const auto found = services.meshes.get({birth, version, suffix}, encode);
+    auto found = services.meshes.get({birth, version, suffix}, encode);
+    // Who asked for the mesh as it is now may have been given a later one, under this key.
+    while (found && std::get<0>(asked) && found->version != version)
+        found = services.meshes.get({birth, version, suffix}, encode);
     // Of a session that was removed meanwhile nothing may stay behind.
     if (!services.sessions.is_kept(session)) services.meshes.forget(birth);
     if (!found) return *std::move(refusal);

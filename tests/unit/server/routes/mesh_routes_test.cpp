@@ -161,5 +161,17 @@ TEST_F(MeshRoutes, CountTheMemoryOfCopiesAndEncodings) {
     EXPECT_EQ(ask("GET", mesh + ".glb").status, 200);
 }
 
+TEST_F(MeshRoutes, CountTheMemoryOfWhatFeaturesSay) {
+    cut("[[[1,1],[2,1],[2,2],[1,1]]]", R"({"text": ")" + std::string(100'000, 'x') + R"("})");
+    const std::size_t free =
+        services.limits.max_memory_bytes - services.sessions.memory_bytes() - 1'000'000;
+    auto most = services.sessions.borrow(free);
+    ASSERT_TRUE(most);
+    EXPECT_EQ(ask("GET", mesh + ".glb").status, 200);
+    EXPECT_EQ(ask("GET", mesh + ".glb?regions=true").status, 507);
+    most.reset();
+    EXPECT_EQ(ask("GET", mesh + ".glb?regions=true").status, 200);
+}
+
 }  // namespace
 }  // namespace tinsmith::server
