@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "api/formats/fault_log.hpp"
 #include "api/formats/grid_mesh.hpp"
 #include "api/formats/json_reader.hpp"
+#include "api/formats/number_text.hpp"
 #include "api/formats/raster_warp.hpp"
 #include "api/terrain_system.hpp"
 
@@ -79,15 +79,6 @@ class Tokens {
     std::size_t token_line_start_ = 0;
 };
 
-/// The whole token as a number; "nan" is one, "1e999" is not.
-std::optional<double> number(std::string_view token) {
-    if (token.starts_with('+')) token.remove_prefix(1);
-    double value = 0.0;
-    const auto [stop, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (error != std::errc() || stop != token.data() + token.size()) return std::nullopt;
-    return value;
-}
-
 std::string not_a_number(std::string_view token) {
     const std::string hint = token.find(',') != std::string_view::npos
                                  ? " The decimal sign is a point here, and between numbers stands "
@@ -141,7 +132,7 @@ class GridText {
 void GridText::read_header() {
     while (log_.size() < limits_.max_faults) {
         const std::string_view token = tokens_.next();
-        if (token.empty() || number(token)) break;  // the first elevation; "nan" is one
+        if (token.empty() || number_in<double>(token)) break;  // the first elevation; "nan" is one
         const auto* const word = std::ranges::find(kWords, lower(token.substr(0, 20)));
         if (word == kWords.end()) {
             fault_here("GRID_HEADER",
@@ -154,7 +145,7 @@ void GridText::read_header() {
         auto& place = values_[static_cast<std::size_t>(word - kWords.begin())];
         if (place) fault_here("GRID_HEADER", std::string(*word) + " stands here a second time.");
         const std::string_view text = tokens_.next();
-        place = number(text);
+        place = number_in<double>(text);
         if (place) continue;
         fault_here("GRID_HEADER", std::string(*word) + " needs a number: " + not_a_number(text));
         place = 0.0;
@@ -252,7 +243,7 @@ void GridText::read_elevations() {
 
 void GridText::take_elevation(std::string_view token) {
     constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-    const auto read = number(token);
+    const auto read = number_in<double>(token);
     const std::size_t index = grid_.elevations.size();
     grid_.elevations.push_back(nothing);
     if (read && (std::isnan(*read) || (has(kNoData) && *read == value(kNoData)))) return;

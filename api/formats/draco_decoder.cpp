@@ -146,8 +146,8 @@ std::variant<DracoMesh, DracoRefusal> decode_draco(std::string_view bytes, std::
     Allowance allowance;
     allowance.triangles = std::min(max_triangles, promised);
     allowance.points = std::min(max_vertices, promised);
-    constexpr std::size_t kBytesForEach = 512;
-    allowance.attribute_bytes = allowance.points * kBytesForEach;
+    constexpr std::size_t kBytesForEach = 512, kMostBytes = std::size_t{1} << 29;
+    allowance.attribute_bytes = std::min(allowance.points * kBytesForEach, kMostBytes);
     draco::Mesh mesh;
     const draco::Status status = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING
                                      ? decode(EdgeBreaker(allowance), buffer, mesh)
@@ -155,8 +155,8 @@ std::variant<DracoMesh, DracoRefusal> decode_draco(std::string_view bytes, std::
     if (allowance.passed)
         return DracoRefusal{"It promises more than " + std::to_string(allowance.points) +
                                 " points, " + std::to_string(allowance.triangles) +
-                                " triangles or " + std::to_string(kBytesForEach) +
-                                " bytes for each point, which its bytes cannot hold or this "
+                                " triangles or " + std::to_string(allowance.attribute_bytes) +
+                                " bytes of attributes, which its bytes cannot hold or this "
                                 "server does not allow.",
                             true};
     if (!status.ok()) return DracoRefusal{"Draco cannot decode it: " + status.error_msg_string()};

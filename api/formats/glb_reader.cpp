@@ -122,7 +122,7 @@ class SceneReader {
         for (std::size_t i = model_.roots.size(); i-- > 0;)
             open.push_back({model_.roots[i], still, 0});
         std::size_t done = 0;
-        while (!open.empty() && !log_.full()) {
+        while (!open.empty() && !log_.full() && !is_stopped_) {
             const Placed at = open.back();
             open.pop_back();
             const std::string pointer = "/nodes/" + std::to_string(at.node);
@@ -144,11 +144,8 @@ class SceneReader {
                 open.push_back({node.children[i], matrix, at.depth + 1});
             if (node.mesh) read_mesh(*node.mesh, matrix, pointer);
             is_skinned_ = is_skinned_ || node.is_skinned;
-            if (limits_.progress &&
-                !limits_.progress(static_cast<double>(++done) / static_cast<double>(seen.size()))) {
-                log_.add(FaultKind::Stopped, reading_stopped());
-                return;
-            }
+            share_ = static_cast<double>(++done) / static_cast<double>(seen.size());
+            if (!is_stopped_ && limits_.progress && !limits_.progress(share_)) stop({});
         }
         if (terrain_.mesh.triangles.empty() && log_.empty())
             invalid("The scene has no triangle.", "/scenes");
@@ -164,9 +161,19 @@ class SceneReader {
         if (mesh >= model_.meshes.size())
             return invalid("There is no mesh " + std::to_string(mesh) + ".", pointer + "/mesh");
         for (const GltfPrimitive& primitive : model_.meshes[mesh]) {
-            if (log_.full()) return;
+            if (log_.full() || is_stopped_) return;
             read_primitive(primitive, matrix);
+            if (limits_.progress && !limits_.progress(share_)) stop({});
         }
+    }
+
+    /// Nothing more is read. No code: because the caller says so.
+    void stop(Fault fault) {
+        is_stopped_ = true;
+        if (fault.code.empty())
+            log_.add(FaultKind::Stopped, reading_stopped());
+        else
+            log_.add(FaultKind::TooLarge, std::move(fault));
     }
 
     void read_primitive(const GltfPrimitive& primitive, const GltfMatrix& matrix) {
@@ -185,11 +192,9 @@ class SceneReader {
         work_ += geometry->positions.size() + 3 * geometry->triangles.size() +
                  2 * geometry->lines.size();
         if (work_ > 4 * (limits_.max_vertices + 3 * limits_.max_triangles))
-            return log_.add(FaultKind::TooLarge,
-                            {"TOO_MANY_VERTICES",
-                             "All primitives together have more vertices and indices than are "
-                             "taken.",
-                             primitive.pointer});
+            return stop({"TOO_MANY_VERTICES",
+                         "All primitives together have more vertices and indices than are taken.",
+                         primitive.pointer});
         add(primitive, std::move(*geometry), matrix);
     }
 
@@ -258,11 +263,15 @@ class SceneReader {
     void add(const GltfPrimitive& primitive, Geometry geometry, const GltfMatrix& matrix) {
         auto& mesh = terrain_.mesh;
         if (geometry.triangles.size() > limits_.max_triangles - mesh.triangles.size())
-            return log_.add(FaultKind::TooLarge,
-                            {"TOO_MANY_TRIANGLES",
-                             "The scene has more than " + std::to_string(limits_.max_triangles) +
-                                 " triangles; no more are taken.",
-                             primitive.pointer});
+            return stop({"TOO_MANY_TRIANGLES",
+                         "The scene has more than " + std::to_string(limits_.max_triangles) +
+                             " triangles; no more are taken.",
+                         primitive.pointer});
+        if (geometry.lines.size() > limits_.max_vertices - lines_.size())
+            return stop({"TOO_MANY_LINES",
+                         "The scene has more than " + std::to_string(limits_.max_vertices) +
+                             " lines; no more are taken.",
+                         primitive.pointer});
         const bool moved_only = is_moved_only(matrix);
         for (core::Point3& p : geometry.positions) {
             p = placed(matrix, moved_only, p);
@@ -272,11 +281,10 @@ class SceneReader {
         const bool mirrored = is_mirrored(matrix);
         const auto numbers = numbers_of(geometry, primitive);
         if (mesh.vertices.size() > limits_.max_vertices)
-            return log_.add(FaultKind::TooLarge,
-                            {"TOO_MANY_VERTICES",
-                             "The scene has more than " + std::to_string(limits_.max_vertices) +
-                                 " vertices; no more are taken.",
-                             primitive.pointer});
+            return stop({"TOO_MANY_VERTICES",
+                         "The scene has more than " + std::to_string(limits_.max_vertices) +
+                             " vertices; no more are taken.",
+                         primitive.pointer});
         for (const auto& [a, b, c] : geometry.triangles) {
             mesh.triangles.push_back({numbers[a], numbers[b], numbers[c]});
             if (mirrored) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
@@ -293,7 +301,8 @@ class SceneReader {
             for (const std::uint32_t v : corners)
                 numbers[v] = 0;
         for (std::uint32_t v = 0; v < numbers.size(); ++v)
-            if (numbers[v] == 0) numbers[v] = number_of(v, geometry, primitive);
+            if (numbers[v] == 0 && terrain_.mesh.vertices.size() <= limits_.max_vertices)
+                numbers[v] = number_of(v, geometry, primitive);
         return numbers;
     }
 
@@ -340,7 +349,9 @@ class SceneReader {
     VertexWelder welder_{terrain_.mesh.vertices};
     std::vector<Line> lines_;
     std::size_t passed_over_ = 0;
-    std::size_t work_ = 0;  ///< numbers that were got so far
+    std::size_t work_ = 0;     ///< numbers that were got so far
+    double share_ = 0.0;       ///< of the nodes, that has been read
+    bool is_stopped_ = false;  ///< a limit is passed, or the caller says so
     bool is_skinned_ = false;
     /// The first triangle of each primitive that was met, and where that stands.
     std::shared_ptr<std::vector<std::pair<std::size_t, std::string>>> starts_ =

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "api/crs.hpp"
 #include "api/formats/breaklines.hpp"
 #include "api/formats/fault_log.hpp"
+#include "api/formats/number_text.hpp"
 #include "api/formats/shown_text.hpp"
 #include "core/predicates/orientation.hpp"
 
@@ -92,14 +92,21 @@ class LandXmlReader {
         return "line " + std::to_string(line_at(node.offset_debug()));
     }
 
-    /// A tree takes many times the bytes of the shortest elements, so they are counted first.
+    /// A tree takes many times the bytes of the shortest elements, so they are counted first: no
+    /// more than points and faces that are taken, and no shorter than those can be.
     bool is_small_enough() {
+        constexpr std::size_t kShortest = 10;  // <F>1 2 3</F>
         const std::size_t most =
-            2 * (limits_.max_vertices + limits_.max_triangles) + 2 * kOtherElements;
-        const auto count = [this](char c) {
-            return static_cast<std::size_t>(std::count(bytes_.begin(), bytes_.end(), c));
-        };
-        if (count('<') <= most && count('=') <= 2 * most) return true;
+            std::min(limits_.max_vertices + limits_.max_triangles, bytes_.size() / kShortest) +
+            kOtherElements;
+        std::size_t elements = 0, attributes = 0;
+        char before = ' ';
+        for (const char c : bytes_) {
+            elements += before == '<' && c != '/' ? 1U : 0U;
+            attributes += c == '=' ? 1U : 0U;
+            before = c;
+        }
+        if (elements <= most && attributes <= 2 * most) return true;
         fault(FaultKind::TooLarge, "XML_TOO_LARGE",
               "The file has more elements or attributes than points and faces that are taken.");
         return false;
@@ -229,11 +236,11 @@ class LandXmlReader {
         std::array<double, 3> p{};
         for (double& value : p) {
             const std::string_view word = words.next();
-            const char* end = word.data() + word.size();
-            const auto [stop, error] = std::from_chars(word.data(), end, value);
-            if (word.empty() || error != std::errc() || stop != end)
+            const auto number = number_in<double>(word);
+            if (!number)
                 return invalid("LANDXML_POINT",
                                what + place(point) + ") is not \"northing easting elevation\".");
+            value = *number;
             if (!(std::fabs(value) <= kMaxCoordinate))
                 return invalid(
                     "COORDINATE_OUT_OF_RANGE",
@@ -312,9 +319,9 @@ class LandXmlReader {
         std::size_t axis = 0;
         Words words(list.child_value());
         for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-            const char* end = word.data() + word.size();
-            const auto [stop, error] = std::from_chars(word.data(), end, p[axis]);
-            if (error != std::errc() || stop != end || !std::isfinite(p[axis])) return false;
+            const auto number = number_in<double>(word);
+            if (!number || !std::isfinite(*number)) return false;
+            p[axis] = *number;
             if (++axis < p.size()) continue;
             axis = 0;
             out.push_back({p[1], p[0], p[2]});

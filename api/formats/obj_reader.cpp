@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "api/formats/fault_log.hpp"
+#include "api/formats/number_text.hpp"
 #include "api/formats/shown_text.hpp"
 #include "core/predicates/orientation.hpp"
 
@@ -34,16 +34,6 @@ constexpr std::size_t kLinesBetweenLooks = 4096;
 
 bool is_in(std::string_view word, std::span<const std::string_view> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-template <typename Number>
-std::optional<Number> number_of(std::string_view text) {
-    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-    Number value{};
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end) return std::nullopt;
-    return value;
 }
 
 /// Words of a file, line by line. A backslash at the end of a line goes on with the next.
@@ -160,7 +150,7 @@ class ObjReader {
         std::array<double, 3> p{};
         for (double& value : p) {
             const std::string_view word = words_.next();
-            const auto number = number_of<double>(word);
+            const auto number = number_in<double>(word);
             if (!number) {
                 fault("OBJ_VERTEX", word.empty() ? "A vertex has three numbers, x y z."
                                                  : shown(word) + " is no number.");
@@ -183,7 +173,7 @@ class ObjReader {
     /// The vertex of a corner: "7", "7/1", "7/1/2", "7//2" or, counted back, "-1".
     std::optional<std::uint32_t> corner(std::string_view word) {
         const std::string_view own = word.substr(0, word.find('/'));
-        const auto number = number_of<std::int64_t>(own);
+        const auto number = number_in<std::int64_t>(own);
         if (!number || *number == 0) {
             fault("OBJ_INDEX",
                   shown(word) + " names no vertex: they are counted from 1, or back from -1.");
@@ -202,8 +192,8 @@ class ObjReader {
     bool read_corners() {
         corners_.clear();
         bool fine = true;
-        for (std::string_view word = words_.next(); !word.empty() && !word.starts_with('#');
-             word = words_.next()) {
+        for (std::string_view word = words_.next();
+             !word.empty() && !word.starts_with('#') && !log_.full(); word = words_.next()) {
             const auto v = corner(word);
             if (v) corners_.push_back(*v);
             fine = fine && v;

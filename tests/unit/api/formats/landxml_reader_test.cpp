@@ -167,10 +167,15 @@ TEST(LandXml, StopsAtItsLimits) {
     EXPECT_EQ(codes(text, limits), "TOO_MANY_TRIANGLES");
     std::string many = "<LandXML>";
     for (int i = 0; i < 1'100'000; ++i)
-        many += "<a/><a/>";
+        many += "<Aaaaaaaa/>";
     limits.max_vertices = 1;
+    limits.max_triangles = 1;
     EXPECT_EQ(codes(many + "</LandXML>", limits), "XML_TOO_LARGE");
     EXPECT_EQ(codes(many), "XML_SYNTAX");  // well below the usual limits
+    std::string short_ones = "<LandXML>";  // shorter than points and faces can be
+    for (int i = 0; i < 2'200'000; ++i)
+        short_ones += "<a/>";
+    EXPECT_EQ(codes(short_ones), "XML_TOO_LARGE");
 }
 
 }  // namespace
