@@ -5,22 +5,17 @@
 
 #include "core/predicates/in_circle.hpp"
 #include "core/predicates/orientation.hpp"
+#include "core/types/ids.hpp"
 
 namespace tinsmith::core {
 
 namespace {
 
-constexpr unsigned next_corner(unsigned i) {
-    return i == 2 ? 0 : i + 1;
-}
-constexpr unsigned previous_corner(unsigned i) {
-    return i == 0 ? 2 : i - 1;
-}
 constexpr std::uint32_t next_side(std::uint32_t side) {
-    return (side & 3U) == 2 ? side - 2 : side + 1;
+    return (side & ~3U) + Side::next_of(side & 3U);
 }
 constexpr std::uint32_t previous_side(std::uint32_t side) {
-    return (side & 3U) == 0 ? side + 2 : side - 1;
+    return (side & ~3U) + Side::previous_of(side & 3U);
 }
 
 /// Whether p is to the right of a -> b. On lattices many points are on a line with an edge that is
@@ -64,10 +59,10 @@ std::uint32_t GrowingDelaunay::find(Point2 p) const {
         if (entered == 3) {
             for (unsigned i = 0; i < 3 && beyond == UINT32_MAX; ++i)
                 if (is_right(points_[triangle.vertices[i]],
-                             points_[triangle.vertices[next_corner(i)]], p))
+                             points_[triangle.vertices[Side::next_of(i)]], p))
                     beyond = triangle.twins[i];
         } else {
-            const unsigned first = next_corner(entered), second = previous_corner(entered);
+            const unsigned first = Side::next_of(entered), second = Side::previous_of(entered);
             const Point2 apex = points_[triangle.vertices[second]];
             if (is_right(points_[triangle.vertices[first]], apex, p))
                 beyond = triangle.twins[first];

@@ -22,8 +22,12 @@ using Ring = std::vector<VertexId>;
 using PlanKey = std::array<std::uint64_t, 2>;
 
 struct PlanHash {
+    /// Where something lies in memory, which nobody knows who sends a mesh: places chosen so that
+    /// they fall together do so for one key only.
+    std::uint64_t key;
+
     std::size_t operator()(const PlanKey& place) const {
-        std::uint64_t hash = place[0] * 0x9e3779b97f4a7c15ULL;
+        std::uint64_t hash = (place[0] ^ key) * 0x9e3779b97f4a7c15ULL;
         hash = (hash ^ hash >> 32 ^ place[1]) * 0x9e3779b97f4a7c15ULL;
         return static_cast<std::size_t>(hash ^ hash >> 32);
     }
@@ -120,7 +124,7 @@ class BorderFinder {
     void walk(Side first) {
         BorderedPart& part = parts_[part_.value(first.triangle()) - 1];
         Ring open;
-        RingPlaces places;
+        RingPlaces places(16, PlanHash{reinterpret_cast<std::uintptr_t>(parts_.data())});
         Side side = first;
         do {
             walked_.insert(side.code);
@@ -141,6 +145,7 @@ class BorderFinder {
         for (const VertexId v : ring)
             places.erase(place_of(v));
         open.erase(begin, open.end());
+        if (ring.size() < 3) return;  // out along a slit and back
         if (is_counter_clockwise(tin_, ring)) {
             part.outer = std::move(ring);
         } else {

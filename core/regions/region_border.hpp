@@ -19,8 +19,8 @@ struct BorderedPart {
 ///
 /// Laws: no ring comes to a place twice, so that each is a simple polygon in plan; rings may touch
 /// at vertices. Every side whose triangle is in the set and whose twin is not, or is none, is in
-/// one ring, once. Requires: no triangle is given twice. Cost: the triangles, and a hash search for
-/// each vertex of the border.
+/// one ring, once; but a slit, out and back between two vertices, is no ring. Requires: no triangle
+/// is given twice. Cost: the triangles, and a hash search for each vertex of the border.
 std::vector<BorderedPart> border_of(const Tin& tin, std::span<const TriangleId> triangles);
 
 }  // namespace tinsmith::core

@@ -170,5 +170,20 @@ TEST(RegionBorder, IsSoundForAnyTriangles) {
     }
 }
 
+TEST(RegionBorder, PassesOverSlits) {
+    // Vertices 5 and 6 are in one place: between 4 and 7 the mesh is parted along a line.
+    const Tin tin = *build_tin(
+        {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 2, 0}, {2, 2, 0}, {2, 2, 0}, {3, 2, 0}},
+         {{0, 1, 5}, {0, 5, 4}, {1, 7, 5}, {1, 2, 7}, {2, 6, 7}, {2, 3, 6}, {3, 4, 6}, {3, 0, 4}},
+         {}});
+    std::vector<TriangleId> all;
+    for (std::uint32_t t = 0; t < tin.triangle_count(); ++t)
+        all.push_back({t});
+    const auto parts = border_of(tin, all);
+    ASSERT_EQ(parts.size(), 1U);
+    EXPECT_EQ(parts[0].outer.size(), 4U);
+    EXPECT_TRUE(parts[0].holes.empty());
+}
+
 }  // namespace
 }  // namespace tinsmith::core
