@@ -254,8 +254,9 @@ Parsed<SystemSettled> reconcile_system(
 void bring_from_metres(Terrain& terrain, const TerrainOptions& options) {
     std::optional<std::string> unit = normalise_unit(options.unit);
     const auto crs = normalise_crs(terrain.crs.empty() ? options.crs : terrain.crs);
-    if (const auto facts = !unit && crs ? find_crs(*crs) : std::nullopt;
-        facts && facts->kind == CrsFacts::Kind::Projected)
+    const auto facts = crs ? find_crs(*crs) : std::nullopt;
+    if (facts && facts->kind == CrsFacts::Kind::Geographic) return;  // only z is a length
+    if (!unit && facts && facts->kind == CrsFacts::Kind::Projected)
         unit = unit_of_length(facts->metres);
     if (!unit && !crs && !terrain.unit_before.empty()) unit = terrain.unit_before;
     if (!unit || unit == "metre") return;

@@ -29,7 +29,8 @@ api::Fault fault_of(const core::Error& error, TerrainFormat format, const api::T
         fault.detail += " (" + about.triangle_place(*error.place.triangle) + ")";
     else if (error.place.vertex && about.vertex_place)
         fault.detail += " (" + about.vertex_place(*error.place.vertex) + ")";
-    const bool is_json = format == TerrainFormat::Json;
+    // Of points and grids the triangles are not the caller's.
+    const bool is_json = format == TerrainFormat::Json && !about.triangles_are_made;
     if (error.place.triangle) {
         fault.index = *error.place.triangle;
         if (is_json) fault.pointer = "/mesh/triangles/" + std::to_string(*fault.index);
@@ -153,6 +154,25 @@ bool is_xml(std::string_view bytes) {
     return first_word(bytes).starts_with('<');
 }
 
+/// Repairs, and what `vertices` says the vertices were called, by the numbers that points had.
+void name_as_points(api::Terrain& terrain, std::vector<std::uint32_t>& vertices) {
+    const std::vector<std::uint32_t>& names = terrain.vertex_names;
+    if (vertices.empty()) {
+        vertices = names;
+    } else {
+        for (std::uint32_t& vertex : vertices)
+            vertex = names[vertex];
+    }
+    if (!terrain.repairs) return;
+    for (core::Repair& repair : *terrain.repairs) {
+        if (repair.kind != core::RepairKind::VerticesWelded &&
+            repair.kind != core::RepairKind::VerticesUnused)
+            continue;
+        for (std::size_t& index : repair.indices)
+            index = names[index];
+    }
+}
+
 /// What the options ask for is mended; then the mesh is built.
 api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
                                  const api::TerrainOptions& options) {
@@ -160,7 +180,15 @@ api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
     if (options.repair) {
         repaired = core::repair_mesh(terrain.mesh, options.weld);
         terrain.repairs = std::move(repaired.repairs);
+        if (terrain.mesh.triangles.empty()) {
+            return {api::FaultKind::Invalid,
+                    api::Fault{"NOTHING_LEFT",
+                               "All triangles are flat in plan, such as upright ones, or repeated: "
+                               "nothing is left after the repair. A terrain has z up.",
+                               {}}};
+        }
     }
+    if (!terrain.vertex_names.empty()) name_as_points(terrain, repaired.vertices);
     auto tin = core::build_tin(terrain.mesh, {repaired.vertices, repaired.triangles});
     if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
     if (!tin) {
@@ -173,6 +201,7 @@ api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
         return {kind, std::move(faults)};
     }
     terrain.mesh = {};
+    terrain.vertex_names = {};
     terrain.vertex_place = {};
     terrain.triangle_place = {};
     return LoadedTerrain{std::move(terrain), std::move(*tin)};
@@ -188,6 +217,7 @@ TerrainFormat terrain_format_of(std::string_view bytes) {
     if (is_tiff) return TerrainFormat::GeoTiff;
     bytes = without_mark(bytes);
     if (bytes.starts_with("glTF") || is_gltf(bytes)) return TerrainFormat::Glb;
+    if (first_word(bytes).starts_with('{')) return TerrainFormat::Json;
     if (is_xml(bytes)) return TerrainFormat::LandXml;
     if (api::begins_as_ascii_grid(bytes)) return TerrainFormat::AsciiGrid;
     if (api::looks_like_csv(bytes)) return TerrainFormat::Csv;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/formats/points_mesh.hpp"
 
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/mesh/delaunay.hpp"
 
@@ -33,6 +36,17 @@ Parsed<Terrain> refusal(const core::Errors& errors, const ReadLimits& limits,
     return {kind, std::move(faults)};
 }
 
+/// Which of the points each vertex is. What was left out is equal to one before it, and no vertex
+/// is there twice.
+std::vector<std::uint32_t> names_of(std::span<const core::Point3> vertices,
+                                    std::span<const core::Point3> points) {
+    std::vector<std::uint32_t> names;
+    names.reserve(vertices.size());
+    for (std::uint32_t i = 0; i < points.size() && names.size() < vertices.size(); ++i)
+        if (points[i] == vertices[names.size()]) names.push_back(i);
+    return names;
+}
+
 }  // namespace
 
 Parsed<Terrain> triangulated(Terrain terrain, const ReadLimits& limits) {
@@ -50,7 +64,10 @@ Parsed<Terrain> triangulated(Terrain terrain, const ReadLimits& limits) {
                  std::to_string(limits.max_triangles) + " are taken here.",
              terrain.points->pointer}};
     }
+    if (mesh->vertices.size() < terrain.mesh.vertices.size())
+        terrain.vertex_names = names_of(mesh->vertices, terrain.mesh.vertices);
     terrain.mesh = std::move(*mesh);
+    terrain.triangles_are_made = true;
     terrain.points.reset();
     return terrain;
 }

@@ -268,6 +268,7 @@ class Body : public Object {
             auto mesh = mesh_of_grid(grid_, limits_, "/grid");
             if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
             terrain_.mesh = std::move(*mesh);
+            terrain_.triangles_are_made = true;
         }
         if (!log.empty()) return std::move(log).refusal<Terrain>();
         terrain_.unit_is_said = has("unit");

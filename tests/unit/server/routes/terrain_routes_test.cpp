@@ -63,6 +63,25 @@ TEST_F(TerrainRoutes, KnowFormatsByTheirFirstBytes) {
     EXPECT_EQ(terrain_format_of(kSquare), TerrainFormat::Json);
     EXPECT_EQ(terrain_format_of(""), TerrainFormat::Json);
     EXPECT_EQ(terrain_format_of("vertices"), TerrainFormat::Json);
+    std::string one_line = R"({"mesh": {"vertices": [)";
+    for (int i = 0; i < 1000; ++i)
+        one_line += "[" + std::to_string(i) + ", 0, 1], ";
+    EXPECT_EQ(terrain_format_of(one_line), TerrainFormat::Json);
+}
+
+TEST_F(TerrainRoutes, TellRepairsOfPointsByTheirNumbers) {
+    const auto made = send("?repair=true&weld=0.1", "application/json",
+                           R"({"points": [[0,0,1],[0,0,1],[0,0,1],[10,0,1],[10,10,1],[0,10,1],
+                               [5,5,1],[5,5.01,1]]})");
+    ASSERT_EQ(made.status, 201) << made.body;
+    EXPECT_EQ(body_of(made)["repairs"][0]["code"], "VERTICES_WELDED");
+    EXPECT_EQ(body_of(made)["repairs"][0]["indices"], json::parse("[7]"));
+}
+
+TEST_F(TerrainRoutes, SayWhenARepairLeavesNothing) {
+    const auto refused = send("?repair=true", "model/obj", "v 0 0 0\nv 1 0 0\nv 1 0 5\nf 1 2 3\n");
+    EXPECT_EQ(refused.status, 422) << refused.body;
+    EXPECT_EQ(told(refused), "NOTHING_LEFT");
 }
 
 TEST_F(TerrainRoutes, NameEachFaultWithoutRepair) {
