@@ -25,6 +25,8 @@ constexpr const char* kAnswers = "x-answers";
 constexpr const char* kAnswerHeaders = "x-answer-headers";
 constexpr const char* kRecorded = "x-recorded";
 constexpr const char* kQuery = "x-query";
+/// The names of those options of a mesh that an edit's answer takes too.
+constexpr const char* kMeshQuery = "x-mesh-query";
 
 /// Of each operation, whatever it is; by their names under components.
 constexpr std::array<const char*, 3> kRequestHeaders{"AcceptEncoding", "RequestId", "TraceParent"};
@@ -95,17 +97,29 @@ class Operation {
     }
 
     void add_query() {
-        if (!operation_.contains(kQuery)) return;
-        const auto schema = operation_[kQuery].get<std::string>();
-        const Json& properties = document_["components"]["schemas"][schema]["properties"];
-        for (const auto& [name, property] : properties.items()) {
-            Json parameter{{"name", name}, {"in", "query"}};
-            if (resolved(property).contains("description"))
-                parameter["description"] = resolved(property)["description"];
-            parameter["schema"] = reference("schemas/" + schema + "/properties/" + name);
-            operation_["parameters"].push_back(std::move(parameter));
+        if (operation_.contains(kQuery)) {
+            const auto schema = operation_[kQuery].get<std::string>();
+            for (const auto& [name, property] : properties_of(schema).items())
+                add_parameter(schema, name);
+        }
+        if (operation_.contains(kMeshQuery)) {
+            for (const auto& name : operation_[kMeshQuery])
+                add_parameter("MeshOptions", name.get<std::string>());
         }
         operation_.erase(kQuery);
+        operation_.erase(kMeshQuery);
+    }
+
+    const Json& properties_of(const std::string& schema) const {
+        return document_["components"]["schemas"][schema]["properties"];
+    }
+
+    void add_parameter(const std::string& schema, const std::string& name) {
+        const Json& property = resolved(properties_of(schema)[name]);
+        Json parameter{{"name", name}, {"in", "query"}};
+        if (property.contains("description")) parameter["description"] = property["description"];
+        parameter["schema"] = reference("schemas/" + schema + "/properties/" + name);
+        operation_["parameters"].push_back(std::move(parameter));
     }
 
     void add_words_of(const Json& value) {

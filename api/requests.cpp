@@ -194,6 +194,12 @@ std::span<const std::string_view> mesh_option_names() {
     return kMeshNames;
 }
 
+std::span<const std::string_view> gltf_option_names() {
+    constexpr std::size_t kCount = 5;
+    static_assert(kMeshNames[kCount] == "regions");
+    return mesh_option_names().first(kCount);
+}
+
 Parsed<PolygonOptions> parse_polygon_options(std::span<const NamedOption> options,
                                              OptionList list) {
     PolygonOptions out;

@@ -51,6 +51,9 @@ std::string_view option_values(std::string_view name);
 /// The query parameters of a mesh request, granted or not.
 std::span<const std::string_view> mesh_option_names();
 
+/// Those of them that say how it is written, not what of it: an edit's answer takes them too.
+std::span<const std::string_view> gltf_option_names();
+
 /// How a mesh is to be written, and what of it.
 struct MeshOptions {
     GltfOptions gltf;

@@ -46,7 +46,9 @@ struct Terrain {
     bool unit_is_said = false;   ///< by the bytes; otherwise it is only assumed
     std::string unit_before;     ///< that the lengths had before they became metres; empty: unknown
     bool settled = false;        ///< system and unit stand, with all that the options say
-    std::vector<std::string> notes;   ///< what was passed over, a sentence each, for people
+    std::vector<std::string> notes;  ///< what was passed over, a sentence each, for people
+    /// Of JSON: where `vertices` and `triangles` stand.
+    std::string mesh_pointer = "/mesh";
     bool triangles_are_made = false;  ///< of points or a grid: the bytes have none
     /// What points were numbered in the bytes, where some were left out. Empty: as the vertices.
     std::vector<std::uint32_t> vertex_names;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -95,6 +96,23 @@ T* one(T value) {
     return made;
 }
 
+core::Point2 centre_of(const Grid& grid) {
+    return {grid.origin.x + 0.5 * grid.dx * static_cast<double>(grid.columns - 1),
+            grid.origin.y + 0.5 * grid.dy * static_cast<double>(grid.rows - 1)};
+}
+
+/// Why the raster's centre has no place in a system, or lies far outside of where that is used.
+/// Nothing too where PROJ does not know `from`, which may be a description that GDAL alone reads.
+std::optional<Fault> misplaced(const Grid& grid, const std::string& from, const std::string& to) {
+    const auto way = Transformation::between(from, to);
+    const auto* known = std::get_if<Transformation>(&way);
+    if (known == nullptr) return std::nullopt;
+    const auto there = (*known)(centre_of(grid));
+    const auto* no = std::get_if<NoPlace>(&there);
+    if (no == nullptr) return std::nullopt;
+    return Fault{no->code, "The raster's centre: " + no->detail, {}};
+}
+
 Fault failed(const GdalScope& messages) {
     return {"PROJECT_FAILED",
             "The raster cannot be brought into that system: " + messages.complaint() +
@@ -107,8 +125,7 @@ Fault failed(const GdalScope& messages) {
 
 std::variant<std::string, NoPlace> utm_zone_of(const Grid& grid, const std::string& from) {
     const GdalScope messages;
-    core::Point2 centre{grid.origin.x + 0.5 * grid.dx * static_cast<double>(grid.columns - 1),
-                        grid.origin.y + 0.5 * grid.dy * static_cast<double>(grid.rows - 1)};
+    core::Point2 centre = centre_of(grid);
     const System own = system_of(from), degrees = system_of("OGC:CRS84");
     OGRCoordinateTransformationH way =
         own && degrees ? OCTNewCoordinateTransformation(own.get(), degrees.get()) : nullptr;
@@ -123,6 +140,7 @@ std::variant<std::string, NoPlace> utm_zone_of(const Grid& grid, const std::stri
 Parsed<Grid> warp_grid(const Grid& grid, const std::string& from, const std::string& to,
                        const ReadLimits& limits) {
     const GdalScope messages;
+    if (auto fault = misplaced(grid, from, to)) return {FaultKind::Invalid, *std::move(fault)};
     const System source = system_of(from), target = system_of(to);
     if (!source || !target) return {FaultKind::Invalid, failed(messages)};
     // Read only: GDAL's signature knows no const.

@@ -243,6 +243,9 @@ class Body : public Object {
     explicit Body(const ReadLimits& limits)
         : limits_(limits),
           mesh_(terrain_.mesh, limits),
+          vertices_(terrain_.mesh.vertices, limits.max_vertices, "a vertex [x, y, z]",
+                    "an array of vertices"),
+          triangles_(terrain_.mesh.triangles, limits.max_triangles),
           points_list_(terrain_.mesh.vertices, limits.max_vertices, "a point [x, y, z]",
                        "an array of points"),
           grid_object_(grid_, limits) {
@@ -251,7 +254,9 @@ class Body : public Object {
                 {"unit", &unit_},
                 {"mesh", &mesh_},
                 {"points", &points_list_},
-                {"grid", &grid_object_}});
+                {"grid", &grid_object_},
+                {"vertices", &vertices_},
+                {"triangles", &triangles_}});
     }
 
     /// Points leave half of the work to be done when the body has been read.
@@ -277,14 +282,20 @@ class Body : public Object {
 
   protected:
     void ended(Reader& reader) override {
-        const int terrains = has("mesh") + has("points") + has("grid");
+        const bool is_bare = has("vertices") || has("triangles");
+        const int terrains = has("mesh") + has("points") + has("grid") + is_bare;
         if (terrains == 0) {
             reader.fault("MEMBER_MISSING",
-                         "A terrain is needed here: one of \"mesh\", \"points\" and \"grid\".");
+                         "A terrain is needed here: one of \"mesh\", \"points\" and \"grid\", or a "
+                         "mesh itself, \"vertices\" and \"triangles\".");
         } else if (terrains > 1) {
             reader.fault("TERRAIN_REPEATED",
-                         "Give one terrain only: one of \"mesh\", \"points\" and \"grid\".");
+                         "Give one terrain only: one of \"mesh\", \"points\" and \"grid\", or a "
+                         "mesh itself, \"vertices\" and \"triangles\".");
+        } else if (is_bare && !(has("vertices") && has("triangles"))) {
+            reader.fault("MEMBER_MISSING", "A mesh has both, \"vertices\" and \"triangles\".");
         }
+        if (is_bare) terrain_.mesh_pointer.clear();
         terrain_.unit_is_said = has("unit");
     }
 
@@ -297,6 +308,8 @@ class Body : public Object {
     KnownText unit_{terrain_.unit, &normalise_unit, "UNIT_UNKNOWN",
                     "Known are: metre, foot, US survey foot."};
     MeshObject mesh_;
+    VertexList vertices_;  ///< of a mesh as the whole body
+    TriangleList triangles_;
     VertexList points_list_;
     GridObject grid_object_;
 };

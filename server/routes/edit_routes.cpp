@@ -42,9 +42,12 @@ Response refuse_edit(const Request& request, const std::string& polygon, const N
 
 /// What is asked for beside the body.
 struct Wishes {
-    std::size_t type = 0;  ///< of kAnswerTypes
+    std::string_view type;  ///< of the answer
+    api::GltfOptions gltf;  ///< how the mesh is to be written, if that is the answer
     std::optional<std::uint64_t> expected_version;
     bool dry_run = false;
+
+    bool wants_mesh() const { return type == kGlb || type == kGltf; }
 };
 
 Step<Wishes> require_wishes(Services& services, const Request& request, const Session& session) {
@@ -54,10 +57,14 @@ Step<Wishes> require_wishes(Services& services, const Request& request, const Se
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
     const auto dry_run = require_flag(request, "dry_run");
     if (const auto* refusal = std::get_if<Response>(&dry_run)) return *refusal;
-    const Wishes wishes{std::get<0>(type), std::get<0>(expected), std::get<0>(dry_run)};
+    const std::string_view answer_type = kAnswerTypes[std::get<0>(type)];
+    const auto gltf = require_gltf_options(request, answer_type);
+    if (const auto* refusal = std::get_if<Response>(&gltf)) return *refusal;
+    const Wishes wishes{answer_type, std::get<0>(gltf), std::get<0>(expected),
+                        std::get<0>(dry_run)};
     if (!wishes.dry_run) {
         if (auto refusal = refusal_of_blind_edit(services, request, session)) return *refusal;
-    } else if (kAnswerTypes[wishes.type] == kDelta) {
+    } else if (wishes.type == kDelta) {
         return refuse_delta_of_dry_run(request);
     }
     return wishes;
@@ -65,13 +72,12 @@ Step<Wishes> require_wishes(Services& services, const Request& request, const Se
 
 Response send_edit(const Request& request, const Session& session, const EditResult& result,
                    const Wishes& wishes) {
-    Response response = wishes.type == 1 || wishes.type == 3
-                            ? mesh_after(request, session, result.version, result.mesh,
-                                         wishes.dry_run, kAnswerTypes[wishes.type])
-                        : wishes.type == 2
-                            ? delta_response(request, session, result.version, result.delta)
-                            : ok(kJson, api::write_edit(session.facts().id, result.version,
-                                                        wishes.dry_run, *result.answer));
+    Response response =
+        wishes.wants_mesh()     ? mesh_after(request, session, result.version, result.mesh,
+                                             wishes.dry_run, wishes.type, wishes.gltf)
+        : wishes.type == kDelta ? delta_response(request, session, result.version, result.delta)
+                                : ok(kJson, api::write_edit(session.facts().id, result.version,
+                                                            wishes.dry_run, *result.answer));
     if (!wishes.dry_run) response.with("Link", history_link(session, result.version));
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
 }
@@ -92,7 +98,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     if (!asked) {
         return refuse(request, api::problem_of_faults(asked.kind(), std::move(asked.faults())));
     }
-    const bool as_mesh = kAnswerTypes[wishes.type] == kGlb || kAnswerTypes[wishes.type] == kGltf;
+    const bool as_mesh = wishes.wants_mesh();
     const std::size_t mesh_bytes = session.mesh_bytes();
     const auto memory = require_memory(
         services, request,
@@ -106,7 +112,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     begin_stage(0.8);
     edit.dry_run = wishes.dry_run;
     edit.want_mesh = as_mesh;
-    edit.want_delta = kAnswerTypes[wishes.type] == kDelta;
+    edit.want_delta = wishes.type == kDelta;
     edit.expected_version = wishes.expected_version;
     const auto outcome = session.edit(std::move(edit));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome))

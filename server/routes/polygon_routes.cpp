@@ -64,11 +64,16 @@ Response integrate_polygons(Services& services, const Request& request,
     if (auto refusal = refusal_of_memory(services, request)) return *refusal;
     const auto type = require_media_type(request, kAnswerTypes);
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
+    const std::string_view answer_type = kAnswerTypes[std::get<0>(type)];
+    const auto gltf = require_gltf_options(request, answer_type);
+    if (const auto* refusal = std::get_if<Response>(&gltf)) return *refusal;
     const auto expected = require_if_match(request, session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
 
     begin_stage(0.1);
-    auto work = read_polygon_work(request.body, options_of_query(request), services.read_limits());
+    auto work =
+        read_polygon_work(request.body, options_of_query(request, api::polygon_option_names()),
+                          services.read_limits());
     if (!work) {
         return refuse(request, api::problem_of_faults(work.kind(), std::move(work.faults())));
     }
@@ -76,8 +81,8 @@ Response integrate_polygons(Services& services, const Request& request,
         return refuse(request, api::problem_of_faults(api::FaultKind::Invalid, std::move(faults)));
     }
 
-    const bool as_mesh = std::get<0>(type) == 1 || std::get<0>(type) == 3;
-    const bool as_delta = std::get<0>(type) == 2;
+    const bool as_mesh = answer_type == kGlb || answer_type == kGltf;
+    const bool as_delta = answer_type == kDelta;
     work->edit.want_mesh = as_mesh;
     work->edit.want_delta = as_delta;
     work->edit.expected_version = std::get<0>(expected);
@@ -109,7 +114,7 @@ Response integrate_polygons(Services& services, const Request& request,
     begin_stage(1.0);
     const auto& result = std::get<PolygonResult>(outcome);
     Response response = as_mesh ? mesh_after(request, session, result.version, result.mesh, dry_run,
-                                             kAnswerTypes[std::get<0>(type)])
+                                             answer_type, std::get<0>(gltf))
                         : as_delta ? delta_response(request, session, result.version, result.delta)
                                    : send_report(session, result, dry_run);
     if (!dry_run) response.with("Link", history_link(session, result.version));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/route_support.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <utility>
@@ -76,7 +77,8 @@ Step<std::size_t> require_media_type(const Request& request,
         known += offer;
     }
     return refuse(request, api::ProblemType::NotAcceptable,
-                  "Accept names nothing that can be sent here; there is: " + known + ".");
+                  "Accept names nothing that can be sent here; there is: " + known + ".")
+        .with("Vary", "Accept");
 }
 
 Response refuse_media_type(const Request& request, const std::string& type, std::string_view what,
@@ -96,6 +98,30 @@ std::vector<api::NamedOption> options_of_query(const Request& request) {
     for (const auto& [name, value] : request.query)
         options.push_back({name, value, {}});
     return options;
+}
+
+std::vector<api::NamedOption> options_of_query(const Request& request,
+                                               std::span<const std::string_view> names) {
+    auto options = options_of_query(request);
+    std::erase_if(options, [&](const api::NamedOption& option) {
+        return std::ranges::find(names, option.name) == names.end();
+    });
+    return options;
+}
+
+Step<api::GltfOptions> require_gltf_options(const Request& request, std::string_view type) {
+    const auto given = options_of_query(request, api::gltf_option_names());
+    if (!given.empty() && type != kGlb && type != kGltf) {
+        std::string detail = given.front().name + " is about glTF, and the answer is to be " +
+                             std::string(type) +
+                             ": leave it out, or add the header Accept: " + std::string(kGlb) + ".";
+        return refuse(request, {api::ProblemType::InvalidParameter,
+                                detail,
+                                {{"CONTRADICTION", detail, {}, {}, {}, given.front().name}}});
+    }
+    auto options = api::parse_mesh_options(given);
+    if (options) return std::move(options->gltf);
+    return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
 }
 
 Response gltf_response(const Request& request, const core::MeshData& mesh,
@@ -128,15 +154,14 @@ Response delta_response(const Request& request, const Session& session, std::uin
 }
 
 Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run,
-                    std::string_view type) {
+                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type,
+                    api::GltfOptions options) {
     const std::string made =
         " The edit was made: the session has version " + std::to_string(version) + ".";
     if (!mesh) {
         return refuse(request, api::ProblemType::OutOfMemory,
                       "There is no memory to send the mesh now: get it later." + made);
     }
-    api::GltfOptions options;
     options.unit_to_metre = api::metres_per(session.facts().unit);
     options.crs = session.facts().crs;
     return gltf_response(request, *mesh, options, {type, nullptr, dry_run ? std::string() : made});

@@ -41,6 +41,14 @@ Response refuse_media_type(const Request& request, const std::string& type, std:
 /// The query as options, with no place in the body.
 std::vector<api::NamedOption> options_of_query(const Request& request);
 
+/// Those of the query that have one of these names.
+std::vector<api::NamedOption> options_of_query(const Request& request,
+                                               std::span<const std::string_view> names);
+
+/// How the query of an edit wants its mesh written, which is to be sent as that type; 400 where it
+/// says so of a type that is not glTF.
+Step<api::GltfOptions> require_gltf_options(const Request& request, std::string_view type);
+
 /// How a mesh goes out as glTF.
 struct GltfAnswer {
     std::string_view type = "model/gltf-binary";    ///< or "model/gltf+json"
@@ -59,7 +67,8 @@ Response delta_response(const Request& request, const Session& session, std::uin
 /// The mesh after an edit as glTF of that type. The edit is made even where its mesh cannot be
 /// sent, and the answer says so, unless it was a dry run.
 Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type);
+                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type,
+                    api::GltfOptions options);
 
 /// 400: a dry run makes no version.
 Response refuse_delta_of_dry_run(const Request& request);

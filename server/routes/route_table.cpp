@@ -38,6 +38,14 @@ std::span<const std::string_view> mesh_parameters() {
     return kNames;
 }
 
+/// What an edit takes, and how its mesh is to be written where that is the answer.
+std::vector<std::string_view> with_gltf_options(std::span<const std::string_view> own) {
+    const auto gltf = api::gltf_option_names();
+    std::vector<std::string_view> names(own.begin(), own.end());
+    names.insert(names.end(), gltf.begin(), gltf.end());
+    return names;
+}
+
 /// A handler that answers in JSON whatever is asked: 406 where that is not acceptable.
 Handler as_json(Handler handler) {
     return [handler = std::move(handler)](const Request& request, const PathArguments& arguments) {
@@ -71,7 +79,8 @@ std::vector<Route> make_routes(Services& services) {
     const auto json = [to](Function function) { return as_json(to(function)); };
     const auto terrain = api::terrain_option_names();
     const auto mesh = api::mesh_option_names();
-    const auto polygons = api::polygon_option_names();
+    static const auto polygons = with_gltf_options(api::polygon_option_names());
+    static const auto edit = with_gltf_options(kEdit);
     return {
         {"GET", "/", {}, to(get_page)},
         {"GET", "/healthz", {}, to(get_health)},
@@ -100,7 +109,7 @@ std::vector<Route> make_routes(Services& services) {
         {"PUT", "/v1/sessions/{id}/locks", kLockParameters, change(put_locks)},
         {"DELETE", "/v1/sessions/{id}/locks", kLockParameters, change(delete_locks)},
         {"GET", "/v1/sessions/{id}/locks", kPageParameters, to(get_locks)},
-        {"POST", "/v1/sessions/{id}/edits", kEdit, change(edit_polygon)},
+        {"POST", "/v1/sessions/{id}/edits", edit, change(edit_polygon)},
         {"POST", "/v1/sessions/{id}/undo", {}, change(undo_edit)},
         {"POST", "/v1/sessions/{id}/redo", {}, change(redo_edit)},
         {"GET", "/v1/sessions/{id}/history", kPageParameters, json(get_history)},

@@ -159,6 +159,8 @@ TEST(GeoTiff, DegreesAreWarpedWhereProjectSaysSo) {
     EXPECT_EQ(feet->unit, "US survey foot");
     options.project = "EPSG:999999";
     EXPECT_EQ(read_geotiff(tiff.bytes(), {}, options).faults().at(0).code, "CRS_UNKNOWN");
+    options.project = "EPSG:31370";  // Belgium
+    EXPECT_EQ(read_geotiff(tiff.bytes(), {}, options).faults().at(0).code, "CRS_OUT_OF_AREA");
     options.project = "auto";
     const auto polar = read_geotiff(tiff.place(10, 88, 0.001, 0.001).bytes(), {}, options);
     ASSERT_FALSE(polar.ok());

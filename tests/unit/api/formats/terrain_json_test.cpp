@@ -198,6 +198,21 @@ TEST(TerrainJson, TellsKnownMembersWhenOneIsUnknown) {
               std::string::npos);
 }
 
+TEST(TerrainJson, TakesAMeshAsTheWholeBody) {
+    const auto terrain = read_terrain_json(
+        R"({"vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,2]], "name": "T"})", {});
+    ASSERT_TRUE(terrain.ok());
+    EXPECT_EQ(terrain->mesh.triangles.size(), 1U);
+    EXPECT_EQ(terrain->mesh_pointer, "");
+    const auto half = read_terrain_json(R"({"vertices": [[0,0,0],[1,0,0],[0,1,0]]})", {});
+    ASSERT_FALSE(half.ok());
+    EXPECT_EQ(half.faults()[0].code, "MEMBER_MISSING");
+    const auto both = read_terrain_json(
+        R"({"vertices": [], "triangles": [], "points": [[0,0,0],[1,0,0],[0,1,0]]})", {});
+    ASSERT_FALSE(both.ok());
+    EXPECT_EQ(both.faults()[0].code, "TERRAIN_REPEATED");
+}
+
 TEST(TerrainJson, TellsAllFaultsAtOnce) {
     const auto terrain = read_terrain_json(
         R"({"name": 1, "mesh": {"vertices": [[0, 0], [1, 1e300, true]], "triangles": [[-1]]}})",

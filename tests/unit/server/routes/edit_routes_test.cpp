@@ -84,9 +84,12 @@ TEST_F(EditRoutes, AnswerLikePolygonsDo) {
     EXPECT_EQ(history["changes"].back()["change"], "edit");
     EXPECT_EQ(history["changes"].back()["polygons"], json{"p1"});
     EXPECT_EQ(edit(body, {{"accept", "model/gltf-binary"}}).body.substr(0, 4), "glTF");
+    const Response plain = edit(body, {{"accept", "model/gltf-binary"}}, "?compression=none");
+    EXPECT_TRUE(plain.body == ask("GET", session + "/mesh.glb?compression=none").body);
+    EXPECT_EQ(edit(body, {}, "?compression=none").status, 400);
     EXPECT_EQ(edit(body, {{"accept", "application/vnd.tinsmith.delta"}}).body.substr(0, 4), "TNDL");
     EXPECT_EQ(edit(body, {{"accept", "image/png"}}).status, 406);
-    EXPECT_EQ(version_of(session), 5);
+    EXPECT_EQ(version_of(session), 6);
 }
 
 TEST_F(EditRoutes, ADryRunTellsTheSameAndChangesNothing) {

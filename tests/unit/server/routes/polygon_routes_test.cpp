@@ -117,6 +117,23 @@ TEST_F(PolygonRoutes, SendTheRangeThatOwnElevationsMake) {
     EXPECT_EQ(ask("GET", session + "/mesh.glb").status, 200);
 }
 
+TEST_F(PolygonRoutes, SendTheMeshAsTheQueryWantsIt) {
+    const Response plain =
+        post(session + "/polygons?compression=none&up=z&improve=none&normals=false", kParcel,
+             {{"accept", "model/gltf-binary"}});
+    ASSERT_EQ(plain.status, 200) << plain.body;
+    EXPECT_FALSE(glb_json(plain.body).contains("extensionsUsed"));
+    EXPECT_EQ(plain.body,
+              ask("GET", session + "/mesh.glb?compression=none&up=z&normals=false").body);
+    const Response report = post(session + "/polygons?tolerance=0.1", kParcel);
+    EXPECT_EQ(report.status, 400);
+    EXPECT_EQ(json::parse(report.body)["errors"][0]["parameter"], "tolerance");
+    const Response bad =
+        post(session + "/polygons?tolerance=-1", kParcel, {{"accept", "model/gltf-binary"}});
+    EXPECT_EQ(bad.status, 400);
+    EXPECT_EQ(json::parse(ask("GET", session).body)["polygons"], 1) << "nothing was done";
+}
+
 TEST_F(PolygonRoutes, NameEveryPositionWithoutItsOwnElevation) {
     const json errors = errors_of("?elevation=own", R"({"type": "FeatureCollection", "features": [
         {"type": "Feature", "geometry": {"type": "Point", "coordinates": [1,2]}},

@@ -101,6 +101,9 @@ TEST_F(RoundTrips, JsonIsTheSameToTheLastBit) {
         if (*where.crs != '\0') body += R"(, "crs": ")" + std::string(where.crs) + '"';
         put("b", "", "application/json", body + "}");
         EXPECT_EQ(got("b/mesh.json"), got("a/mesh.json"));
+        put("as-it-is", "", "application/json", got("a/mesh.json"));
+        EXPECT_EQ(got("as-it-is/mesh.json"), got("a/mesh.json"));
+        forget("as-it-is");
         EXPECT_EQ(session("b")["unit"], where.unit);
         forget("a");
         forget("b");
