@@ -119,12 +119,20 @@ class History {
     /// The edit taken back last was made again; these were run for it.
     void redo(std::vector<AppliedPtr> done, Change change) noexcept;
 
-  private:
+    /// An operation that has become part of the base.
     struct Settled {
         OperationPtr operation;  ///< null: of a kind that nobody asks for any more
         std::shared_ptr<const core::Report> report;
     };
 
+    /// Calls `visit` once with all that it holds but its limits, for those who store it.
+    template <typename Either, typename Visit>
+    static void each(Either& history, Visit visit) {
+        visit(history.changes_, history.settled_, history.told_bytes_, history.settled_bytes_,
+              history.settled_polygons_, history.applied_, history.undoable_, history.redoable_);
+    }
+
+  private:
     void replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept;
     void keep(Change change) noexcept;
     void settle_oldest() noexcept;

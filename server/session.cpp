@@ -45,18 +45,35 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
                           edit.winding, std::move(options)});
 }
 
+/// What of it never changes.
+api::SessionView view_of(const SessionFacts& facts) {
+    api::SessionView view;
+    view.id = facts.id;
+    view.name = facts.name;
+    view.crs = facts.crs;
+    view.unit = facts.unit;
+    view.repairs = facts.repairs;
+    view.notes = facts.notes;
+    return view;
+}
+
 }  // namespace
 
 Session::Session(SessionFacts facts, core::Tin tin, HistoryLimits limits)
     : facts_(std::move(facts)),
       tin_(std::move(tin)),
-      history_(limits, tin_.vertex_count(), tin_.triangle_count()) {
-    view_.id = facts_.id;
-    view_.name = facts_.name;
-    view_.crs = facts_.crs;
-    view_.unit = facts_.unit;
-    view_.repairs = facts_.repairs;
-    view_.notes = facts_.notes;
+      history_(limits, tin_.vertex_count(), tin_.triangle_count()),
+      view_(view_of(facts_)) {
+    refresh_view();
+}
+
+Session::Session(SessionImage image)
+    : facts_(std::move(image.facts)),
+      tin_(std::move(image.tin)),
+      history_(std::move(image.history)),
+      next_polygon_(image.next_polygon),
+      digest_(std::move(image.digest)),
+      view_(view_of(facts_)) {
     refresh_view();
 }
 
@@ -161,8 +178,24 @@ core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kin
     change.written[0] = (*applied)->written;
     step.added_bytes = (*applied)->lasting_bytes;
     done[0] = *applied;
+    try {
+        digest_ = log_change(PerformAsked{kind, (*applied)->operation, change.polygons}, {}, done);
+    } catch (...) {
+        is_lost_ = !taken_back((*applied)->undo);
+        throw;
+    }
     history_.make(std::move(step), std::move(done), std::move(change));
     return applied;
+}
+
+/// Without an exception. False: the mesh is now neither what it was nor what it became.
+bool Session::taken_back(const core::Undo& undo) noexcept {
+    try {
+        core::take_back(tin_, undo);
+        return true;
+    } catch (const std::exception&) {
+        return false;
+    }
 }
 
 PolygonFinder Session::polygon_finder() const {

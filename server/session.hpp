@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -18,6 +20,7 @@
 #include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
 #include "server/change.hpp"
+#include "server/change_log.hpp"
 #include "server/edit.hpp"
 #include "server/history.hpp"
 #include "server/locks.hpp"
@@ -56,6 +59,15 @@ struct SessionState {
     std::vector<AppliedPtr> held;  ///< what the polygons are views of; the session must live, too
 };
 
+/// All that a session is, copied out so that it can be stored while the session goes on.
+struct SessionImage {
+    SessionFacts facts;
+    core::Tin tin;
+    History history;
+    std::uint64_t next_polygon = 1;
+    std::string digest;  ///< running; see ChangeLog
+};
+
 using VersionOutcome = std::variant<core::Tin, VersionGone, VersionAhead, core::Errors>;
 using StateOutcome = std::variant<SessionState, VersionGone, VersionAhead, core::Errors>;
 
@@ -67,10 +79,27 @@ using StateOutcome = std::variant<SessionState, VersionGone, VersionAhead, core:
 class Session {
   public:
     Session(SessionFacts facts, core::Tin tin, HistoryLimits limits = {});
+    /// As the one was that the image is of.
+    explicit Session(SessionImage image);
 
     /// A session of its own with all that this one has now: mesh, version, history and the ids to
     /// come. Takes the readers' lock for the time of a copy.
     std::shared_ptr<Session> fork(std::string id, std::string birth) const;
+    /// Takes the readers' lock for the time of a copy.
+    SessionImage image() const;
+
+    /// From now on no change is told of before the log has kept it; nobody sees it earlier, for the
+    /// writer's lock is held meanwhile. What the log refuses is taken back. Requires: nobody else
+    /// has the session yet.
+    void start_log(std::shared_ptr<ChangeLog> log);
+    /// Makes a change again that was logged. Returns nothing where its version and digest came out
+    /// as they were then, else what is wrong. Requires: nobody else has the session yet, no log.
+    std::optional<std::string> repeat(const ChangeAsked& asked, std::uint64_t version,
+                                      std::string_view digest);
+    /// A change that the log refused could not be taken back, for want of memory: the mesh is not
+    /// what the log says, and nobody should use the session any more.
+    bool is_lost() const { return is_lost_; }
+    SessionCounts counts() const;
 
     const SessionFacts& facts() const { return facts_; }
     std::string etag(std::uint64_t version) const;
@@ -143,9 +172,17 @@ class Session {
                                      std::vector<std::string> polygons, const RunLimits& limits);
     /// Of the operations that the mesh holds now. Requires: a lock, for as long as it is in use.
     PolygonFinder polygon_finder() const;
+    /// Has the log keep what the mesh has just become. Requires: the writer's lock, and that
+    /// `taken` were taken back and `done` were run. Returns the running digest.
+    std::string log_change(const ChangeAsked& asked, std::span<const AppliedPtr> taken,
+                           std::span<const AppliedPtr> done) const;
+    SessionCounts counts_now(std::uint64_t version) const;
+    bool taken_back(const core::Undo& undo) noexcept;
     /// What `replace` does to the newest operations, and how that is kept.
     struct Replacement;
-    ChangeOutcome replace(const ChangeRequest& request, Replacement replacement);
+    ChangeOutcome replace(const ChangeRequest& request, const ChangeAsked& asked,
+                          Replacement replacement);
+    bool brought_back(std::span<const AppliedPtr> taken, std::span<const AppliedPtr> done) noexcept;
     std::optional<core::MeshData> mesh_if_possible() const;
     std::optional<api::MeshDelta> delta_if_possible(std::uint64_t from) const;
     api::MeshDelta delta_from(const Change& start) const;
@@ -161,6 +198,9 @@ class Session {
     core::Tin tin_;
     History history_;
     std::uint64_t next_polygon_ = 1;
+    std::shared_ptr<ChangeLog> log_;  ///< null: nothing is kept
+    std::string digest_;              ///< running; empty: nobody wants it
+    std::atomic<bool> is_lost_{false};
 
     mutable std::mutex view_mutex_;  ///< guards the view; taken last and never held for long
     api::SessionView view_;

@@ -68,7 +68,7 @@ ChangeOutcome Session::undo(const ChangeRequest& request) {
     if (!is_expected(request, version())) return VersionMismatch{version()};
     const Edit* edit = history_.undoable();
     if (edit == nullptr) return NothingToDo{};
-    return replace(request,
+    return replace(request, UndoAsked{},
                    {ChangeKind::Undo, edit->version, edit->polygons, edit->first, edit->removed});
 }
 
@@ -77,7 +77,7 @@ ChangeOutcome Session::redo(const ChangeRequest& request) {
     if (!is_expected(request, version())) return VersionMismatch{version()};
     const Edit* edit = history_.redoable();
     if (edit == nullptr) return NothingToDo{};
-    return replace(request,
+    return replace(request, RedoAsked{},
                    {ChangeKind::Redo, edit->version, edit->polygons, edit->first, edit->added});
 }
 
@@ -106,11 +106,27 @@ ChangeOutcome Session::remove_polygon(std::string_view id, bool cascade,
         }
     }
     if (!cascade && !users.versions.empty()) return users;
-    return replace(request, std::move(removal));
+    return replace(request, RemovalAsked{std::string(id), cascade}, std::move(removal));
+}
+
+/// Without an exception. False: the mesh is not what it was before.
+bool Session::brought_back(std::span<const AppliedPtr> taken,
+                           std::span<const AppliedPtr> done) noexcept {
+    try {
+        std::vector<Rerun> wanted;
+        for (const AppliedPtr& old : taken)
+            wanted.push_back({old->version, old->operation});
+        // The same operations on the same mesh: what takes the old ones back fits the new ones.
+        const auto again = replace_newest(tin_, done, wanted, {}, polygon_finder());
+        return std::holds_alternative<std::vector<AppliedPtr>>(again);
+    } catch (const std::exception&) {
+        return false;
+    }
 }
 
 /// Requires: the writer's lock.
-ChangeOutcome Session::replace(const ChangeRequest& request, Replacement replacement) {
+ChangeOutcome Session::replace(const ChangeRequest& request, const ChangeAsked& asked,
+                               Replacement replacement) {
     const std::uint64_t before = version();
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
     history_.prepare(replacement.wanted.size());
@@ -141,6 +157,12 @@ ChangeOutcome Session::replace(const ChangeRequest& request, Replacement replace
     auto& done = std::get<std::vector<AppliedPtr>>(replayed);
     for (const AppliedPtr& applied : done)
         change.written.push_back(applied->written);
+    try {
+        digest_ = log_change(asked, taken, done);
+    } catch (...) {
+        is_lost_ = !brought_back(taken, done);
+        throw;
+    }
     change.vertices = result.change.view.vertices = tin_.vertex_count();
     change.triangles = result.change.view.triangles = tin_.triangle_count();
     if (replacement.kind == ChangeKind::Undo) {

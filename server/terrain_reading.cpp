@@ -33,10 +33,12 @@ api::Fault fault_of(const core::Error& error, TerrainFormat format, const api::T
     const bool is_json = format == TerrainFormat::Json && !about.triangles_are_made;
     if (error.place.triangle) {
         fault.index = *error.place.triangle;
-        if (is_json) fault.pointer = about.mesh_pointer + "/triangles/" + std::to_string(*fault.index);
+        if (is_json)
+            fault.pointer = about.mesh_pointer + "/triangles/" + std::to_string(*fault.index);
     } else if (error.place.vertex) {
         fault.index = *error.place.vertex;
-        if (is_json) fault.pointer = about.mesh_pointer + "/vertices/" + std::to_string(*fault.index);
+        if (is_json)
+            fault.pointer = about.mesh_pointer + "/vertices/" + std::to_string(*fault.index);
     }
     if (error.place.position) {
         fault.coordinate = {error.place.position->x, error.place.position->y};

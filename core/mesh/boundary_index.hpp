@@ -46,6 +46,8 @@ class BoundaryIndex {
     std::size_t memory_bytes() const;
 
   private:
+    friend struct TinState;
+
     struct Entry {
         VertexId vertex;
         Point2 p;

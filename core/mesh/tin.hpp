@@ -188,6 +188,7 @@ class Tin {
     friend class TinBuilder;
     friend class Surgery;
     friend class Removal;
+    friend struct TinState;
 
     std::vector<Vertex, LineAllocator<Vertex>> vertices_;
     std::vector<Triangle, LineAllocator<Triangle>> triangles_;
