@@ -133,9 +133,9 @@ class Journal {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Copies a store, also one that another process serves from: as it is at one moment, every commit
-/// before it and none after. Refuses to overwrite. Returns why it failed, else nothing; then there
-/// is no copy.
+/// Copies a store, also one that another process serves from, into the folder `to`, which is made
+/// or is empty: as it is at one moment, every commit before it and none after. Returns why it
+/// failed, else nothing; where it failed there is no copy. A server takes the folder as it is.
 std::optional<std::string> backup_store(const std::filesystem::path& folder,
                                         const std::filesystem::path& to);
 

@@ -69,7 +69,6 @@ struct SessionRow {
     std::uint64_t version = 0;           ///< the newest
     std::string view;                    ///< at that version
     std::uint64_t snapshot_version = 0;  ///< where `read` starts
-    std::uint64_t tail_bytes = 0;        ///< about what the entries since then take
     /// Not empty: what is damaged and where. Then the other members are what could be read, perhaps
     /// nothing; the session takes no more changes, and `remove` by its birth, if there is one,
     /// still works.
