@@ -17,7 +17,12 @@ namespace {
 constexpr std::int64_t kApplication = 0x544e534d;
 constexpr std::int64_t kFormat = 1;
 
-constexpr const char* kTables = R"sql(
+/// EXTRA until there is a write-ahead log: should the power fail, the journal of the change to one
+/// could be there again and take it back, and the log with it.
+constexpr const char* kNewFile = R"sql(
+    PRAGMA synchronous = EXTRA;
+    PRAGMA journal_mode = WAL;
+    PRAGMA synchronous = FULL;
     BEGIN IMMEDIATE;
     CREATE TABLE session(number INTEGER PRIMARY KEY, birth BLOB NOT NULL, id BLOB NOT NULL,
         facts BLOB NOT NULL, key BLOB NOT NULL, print BLOB NOT NULL, made INTEGER NOT NULL,
@@ -107,10 +112,8 @@ std::string check_format(Database& database, const std::filesystem::path& file,
     const auto [application, format, tables] = found;
     if (application == 0 && format == 0 && tables == 0) {
         if (access == Database::Access::Read) return foreign(file, "it is empty");
-        if (const auto fault = database.run("PRAGMA journal_mode = WAL"))
-            return file.string() + ": " + fault->text;
-        if (const auto fault = database.run(kTables)) return file.string() + ": " + fault->text;
-        return {};
+        const auto fault = database.run(kNewFile);
+        return fault ? file.string() + ": " + fault->text : std::string();
     }
     if (application != kApplication) return foreign(file, "another program made it");
     if (format != kFormat)

@@ -14,9 +14,6 @@ namespace tinsmith::server::store {
 
 namespace {
 
-/// Of 4 KiB: a log of that size is moved into the file, in some tens of milliseconds.
-constexpr int kPagesToMove = 2000;
-
 constexpr std::int64_t kEntriesAPiece = 500;
 constexpr std::int64_t kPartsAPiece = 2;
 constexpr std::int64_t kAnswersAPiece = 100;
@@ -374,7 +371,7 @@ void Writer::probe() {
 /// not within one.
 void Writer::checkpoint() {
     const bool again = pulse_.checkpoint_is_failing() && Clock::now() >= next_probe_;
-    if (broken_ || (rows_->pages_to_move() < kPagesToMove && !again)) return;
+    if (broken_ || (rows_->pages_to_move() < options_.log_pages && !again)) return;
     const auto start = Clock::now();
     const Result fault = rows_->checkpoint();
     if (!fault) return pulse_.note_checkpoint(seconds_since(start));
