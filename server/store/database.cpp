@@ -155,7 +155,8 @@ Database::Opened Database::open(const std::filesystem::path& file, Access access
     sqlite3_busy_timeout(database, kPatienceMs);
     sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-    // In place of the hook that would checkpoint within a commit.
+    // In place of the hook that would move the log within a commit: when is the caller's matter.
+    // (PRAGMA wal_autocheckpoint, whatever its value, would take this one away.)
     sqlite3_wal_hook(database, note_log_pages, result.log_pages_.get());
     return result;
 }
@@ -177,9 +178,10 @@ bool Database::in_transaction() const {
     return sqlite3_get_autocommit(database_.get()) == 0;
 }
 
-int Database::pages_to_move() const {
+int Database::pages_to_move() {
     // Fewer than were moved: the log has begun anew since.
-    return *log_pages_ < moved_pages_ ? *log_pages_ : *log_pages_ - moved_pages_;
+    if (*log_pages_ < moved_pages_) moved_pages_ = 0;
+    return *log_pages_ - moved_pages_;
 }
 
 std::optional<DatabaseFault> Database::checkpoint() {

@@ -81,8 +81,8 @@ class Database {
 
     /// Moves what it can from the log into the file; waits for no reader.
     std::optional<DatabaseFault> checkpoint();
-    /// Pages of the log that the last commit has left to be moved.
-    int pages_to_move() const;
+    /// Pages of the log that the last commit has left to be moved. Asked after each commit.
+    int pages_to_move();
 
     /// Copies all of it as it is at one moment into a new file.
     std::optional<DatabaseFault> copy_to(const std::filesystem::path& file);

@@ -47,10 +47,9 @@ constexpr const char* kNewFile = R"sql(
 
 /// FULL: each commit is synced before it counts. Freed pages are not overwritten with zeros, which
 /// Debian's SQLite does by default: the sweeping of an old snapshot would write all of it again.
-/// The log is cut to the limit when it begins anew. Checkpoints are the writer's: see Writer.
+/// The log is cut to the limit when it begins anew.
 constexpr const char* kManners = R"sql(
     PRAGMA synchronous = FULL;
-    PRAGMA wal_autocheckpoint = 0;
     PRAGMA journal_size_limit = 67108864;
     PRAGMA secure_delete = OFF;
     PRAGMA cell_size_check = ON;

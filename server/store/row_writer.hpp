@@ -44,7 +44,7 @@ class RowWriter {
     Result drop_answers(std::int64_t most, std::int64_t older_than, std::int64_t& done,
                         std::int64_t& freed);
 
-    int pages_to_move() const { return database_.pages_to_move(); }
+    int pages_to_move() { return database_.pages_to_move(); }
     Result checkpoint() { return database_.checkpoint(); }
 
   private:
