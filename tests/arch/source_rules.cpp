@@ -34,7 +34,7 @@ struct Home {
     const char* files;    ///< regular expression for the files that may include it
     bool one_file_only;
 };
-const std::array<Home, 15> kHomes = {{
+const std::array<Home, 16> kHomes = {{
     {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http_server\.cpp)", true},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},
@@ -49,6 +49,7 @@ const std::array<Home, 15> kHomes = {{
     {"spdlog", R"((spdlog|fmt)/.*)", R"(server/.*\.cpp)", false},
     {"OpenSSL", R"(openssl/.*)", R"(server/digest\.cpp)", true},
     {"zlib", R"(zlib\.h)", R"(server/gzip\.cpp)", true},
+    {"SQLite", R"(sqlite3\.h)", R"(server/store/database\.cpp)", true},
     {"the system's memory", R"(sys/mman\.h)", R"(core/mesh/large_blocks\.cpp)", true},
     {"GoogleTest", R"((gtest|gmock)/.*)", R"(tests/.*)", false},
 }};
