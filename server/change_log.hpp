@@ -46,6 +46,7 @@ struct LoggedChange {
     const ChangeAsked& asked;
     std::string digest;  ///< running: of all slots that this change and those before it wrote
     SessionCounts counts;
+    double seconds = 0.0;  ///< that making it took
 };
 
 /// Nothing could be kept: the disk, not the request, is at fault, and nothing was changed.

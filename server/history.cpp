@@ -172,6 +172,19 @@ void History::settle_oldest() noexcept {
     forget_unreachable();
 }
 
+void History::settle() {
+    make_room(settled_, applied_.size());
+    redoable_.clear();
+    undoable_.clear();
+    while (!applied_.empty())
+        settle_oldest();
+    changes_.erase(changes_.begin(), changes_.end() - 1);
+    changes_.back().step.reset();
+    changes_.back().written.clear();
+    changes_.back().lone_bytes = 0;
+    told_bytes_ = changes_.back().told_bytes = told_bytes_of(changes_.back());
+}
+
 /// No version is made again by way of a step that reaches below the base, nor one before it.
 void History::forget_unreachable() noexcept {
     const auto newest = std::find_if(

@@ -119,6 +119,10 @@ class History {
     /// The edit taken back last was made again; these were run for it.
     void redo(std::vector<AppliedPtr> done, Change change) noexcept;
 
+    /// Makes all operations part of the base: nothing can be undone, redone or taken out any more,
+    /// and no version before this one be made again.
+    void settle();
+
     /// An operation that has become part of the base.
     struct Settled {
         OperationPtr operation;  ///< null: of a kind that nobody asks for any more

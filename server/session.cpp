@@ -45,8 +45,9 @@ OperationPtr operation_of(PolygonEdit& edit, std::vector<std::string> ids) {
                           edit.winding, std::move(options)});
 }
 
-/// What of it never changes.
-api::SessionView view_of(const SessionFacts& facts) {
+}  // namespace
+
+api::SessionView view_of(const SessionFacts& facts, const SessionCounts& counts) {
     api::SessionView view;
     view.id = facts.id;
     view.name = facts.name;
@@ -54,16 +55,20 @@ api::SessionView view_of(const SessionFacts& facts) {
     view.unit = facts.unit;
     view.repairs = facts.repairs;
     view.notes = facts.notes;
+    view.version = counts.version;
+    view.vertices = counts.vertices;
+    view.triangles = counts.triangles;
+    view.bounds = counts.bounds;
+    view.polygons = counts.polygons;
+    view.memory_bytes = counts.memory_bytes;
     return view;
 }
-
-}  // namespace
 
 Session::Session(SessionFacts facts, core::Tin tin, HistoryLimits limits)
     : facts_(std::move(facts)),
       tin_(std::move(tin)),
       history_(limits, tin_.vertex_count(), tin_.triangle_count()),
-      view_(view_of(facts_)) {
+      view_(view_of(facts_, {})) {
     refresh_view();
 }
 
@@ -73,7 +78,7 @@ Session::Session(SessionImage image)
       history_(std::move(image.history)),
       next_polygon_(image.next_polygon),
       digest_(std::move(image.digest)),
-      view_(view_of(facts_)) {
+      view_(view_of(facts_, {})) {
     refresh_view();
 }
 
@@ -85,6 +90,7 @@ std::shared_ptr<Session> Session::fork(std::string id, std::string birth) const 
     auto copy = std::make_shared<Session>(std::move(facts), tin_);
     copy->history_ = history_;
     copy->next_polygon_ = next_polygon_;
+    copy->digest_ = digest_;
     copy->refresh_view();
     return copy;
 }
@@ -168,6 +174,7 @@ core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kin
     change.step = Exchange{step.first, {}, step.added};
     change.written.resize(1);
     history_.prepare(1);
+    const Stopwatch watch;
     auto applied = run(tin_, made, std::move(operation), limits, polygon_finder());
     if (!applied) return applied;
     if (kind == ChangeKind::Polygons) change.report = (*applied)->report;
@@ -179,7 +186,7 @@ core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kin
     step.added_bytes = (*applied)->lasting_bytes;
     done[0] = *applied;
     try {
-        digest_ = log_change(PerformAsked{kind, (*applied)->operation, change.polygons}, {}, done);
+        digest_ = log_change(PerformAsked{kind, (*applied)->operation, change.polygons}, {}, done, watch);
     } catch (...) {
         is_lost_ = !taken_back((*applied)->undo);
         throw;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -71,6 +72,20 @@ struct SessionImage {
 using VersionOutcome = std::variant<core::Tin, VersionGone, VersionAhead, core::Errors>;
 using StateOutcome = std::variant<SessionState, VersionGone, VersionAhead, core::Errors>;
 
+/// What runs from when it is made.
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// What listings tell of a session.
+api::SessionView view_of(const SessionFacts& facts, const SessionCounts& counts);
+
 /// One terrain in memory: its mesh, its version and its polygons.
 ///
 /// Laws: one writer at a time, readers beside each other; an edit that fails leaves mesh, version,
@@ -92,6 +107,9 @@ class Session {
     /// writer's lock is held meanwhile. What the log refuses is taken back. Requires: nobody else
     /// has the session yet.
     void start_log(std::shared_ptr<ChangeLog> log);
+    std::shared_ptr<ChangeLog> log() const { return log_; }
+    /// One more of the notes that views carry. Requires: nobody else has the session yet.
+    void add_note(std::string note) { view_.notes.push_back(std::move(note)); }
     /// Makes a change again that was logged. Returns nothing where its version and digest came out
     /// as they were then, else what is wrong. Requires: nobody else has the session yet, no log.
     std::optional<std::string> repeat(const ChangeAsked& asked, std::uint64_t version,
@@ -175,7 +193,7 @@ class Session {
     /// Has the log keep what the mesh has just become. Requires: the writer's lock, and that
     /// `taken` were taken back and `done` were run. Returns the running digest.
     std::string log_change(const ChangeAsked& asked, std::span<const AppliedPtr> taken,
-                           std::span<const AppliedPtr> done) const;
+                           std::span<const AppliedPtr> done, const Stopwatch& watch) const;
     SessionCounts counts_now(std::uint64_t version) const;
     bool taken_back(const core::Undo& undo) noexcept;
     /// What `replace` does to the newest operations, and how that is kept.

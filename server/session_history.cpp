@@ -150,6 +150,7 @@ ChangeOutcome Session::replace(const ChangeRequest& request, const ChangeAsked& 
     for (const AppliedPtr& old : taken)
         change.written.push_back(old->written);
     ChangeResult result{{view_of(change), nullptr, nullptr, nullptr}, std::nullopt};
+    const Stopwatch watch;
     auto replayed =
         replace_newest(tin_, taken, replacement.wanted, request.limits, polygon_finder());
     if (auto* failure = std::get_if<ReplayFailure>(&replayed)) return std::move(*failure);
@@ -158,7 +159,7 @@ ChangeOutcome Session::replace(const ChangeRequest& request, const ChangeAsked& 
     for (const AppliedPtr& applied : done)
         change.written.push_back(applied->written);
     try {
-        digest_ = log_change(asked, taken, done);
+        digest_ = log_change(asked, taken, done, watch);
     } catch (...) {
         is_lost_ = !brought_back(taken, done);
         throw;

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session_store.hpp"
 
-#include <mutex>
+#include <algorithm>
+#include <new>
 #include <utility>
 
 #include "server/random_id.hpp"
 
 namespace tinsmith::server {
+
+namespace {
+
+std::int64_t unix_seconds() {
+    using std::chrono::system_clock;
+    return std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch())
+        .count();
+}
+
+}  // namespace
 
 SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
                                       std::optional<std::string> id) {
@@ -26,50 +37,119 @@ SessionStore::Added SessionStore::fork(const Session& session) {
 }
 
 SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
-    const std::string& key = session->facts().id;
-    const std::unique_lock lock(mutex_);
-    if (sessions_.contains(key)) return StoreRefusal::IdIsTaken;
-    if (sessions_.size() >= limits_.max_sessions) return StoreRefusal::TooMany;
-    if (sum_of_memory() + session->view().memory_bytes > limits_.max_memory_bytes) {
-        return StoreRefusal::NoMemory;
+    const std::string& id = session->facts().id;
+    const auto entry = std::make_shared<Entry>();
+    entry->facts = session->facts();
+    entry->counts = session->counts();
+    entry->is_being_made = true;
+    touch(*entry);
+    Freed freed;
+    {
+        const std::unique_lock lock(mutex_);
+        if (entries_.contains(id)) return StoreRefusal::IdIsTaken;
+        if (entries_.size() >= limits_.max_sessions) return StoreRefusal::TooMany;
+        if (!make_room(entry->counts.memory_bytes, freed)) return StoreRefusal::NoMemory;
+        entries_.emplace(id, entry);
     }
-    sessions_.emplace(key, session);
+    try {
+        if (vault_ != nullptr) vault_->create(*session);
+    } catch (...) {
+        const std::unique_lock lock(mutex_);
+        entries_.erase(id);
+        throw;
+    }
+    const std::unique_lock lock(mutex_);
+    entry->session = session;
+    entry->is_being_made = false;
     return session;
 }
 
-std::shared_ptr<Session> SessionStore::find(const std::string& id) const {
-    const std::shared_lock lock(mutex_);
-    const auto found = sessions_.find(id);
-    return found == sessions_.end() ? nullptr : found->second;
+std::shared_ptr<Session> SessionStore::find(const std::string& id) {
+    EntryPtr entry;
+    {
+        const std::shared_lock lock(mutex_);
+        const auto found = entries_.find(id);
+        if (found == entries_.end() || found->second->is_being_made) return nullptr;
+        entry = found->second;
+        touch(*entry);
+        if (entry->session && !entry->session->is_lost()) return entry->session;
+    }
+    return load(*entry);
 }
 
-std::vector<std::shared_ptr<Session>> SessionStore::all() const {
+bool SessionStore::contains(const std::string& id) const {
     const std::shared_lock lock(mutex_);
-    std::vector<std::shared_ptr<Session>> list;
-    list.reserve(sessions_.size());
-    for (const auto& [id, session] : sessions_)
-        list.push_back(session);
-    return list;
+    return entries_.contains(id);
+}
+
+SessionStore::Page SessionStore::page(const std::string& after, std::size_t limit) const {
+    const std::shared_lock lock(mutex_);
+    Page page;
+    for (auto entry = entries_.upper_bound(after); entry != entries_.end(); ++entry) {
+        if (entry->second->is_being_made) continue;
+        page.more = page.views.size() == limit;
+        if (page.more) break;
+        page.views.push_back(view_of_entry(*entry->second));
+    }
+    return page;
+}
+
+api::SessionView SessionStore::view(const Session& session) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(session.facts().id);
+    if (found == entries_.end() || found->second->session.get() != &session) return session.view();
+    return view_of_entry(*found->second);
+}
+
+/// Requires: the lock.
+api::SessionView SessionStore::view_of_entry(const Entry& entry) const {
+    api::SessionView view =
+        entry.session ? entry.session->view() : view_of(entry.facts, entry.counts);
+    if (!entry.damage.empty()) view.notes.push_back("Out of service: " + entry.damage);
+    if (limits_.session_ttl > 0)
+        view.expires = entry.used + static_cast<std::int64_t>(limits_.session_ttl);
+    return view;
 }
 
 Removal SessionStore::remove(const Session& session, std::optional<std::uint64_t> expected) {
-    std::shared_ptr<Session> last;  // freed after the lock: a mesh is large
+    EntryPtr going;  // freed after the lock: a mesh is large
+    const std::string& id = session.facts().id;
+    {
+        const std::unique_lock lock(mutex_);
+        const auto found = entries_.find(id);
+        if (found == entries_.end() || found->second->session.get() != &session)
+            return Removal::Gone;
+        if (expected && *expected != session.view().version) return Removal::OtherVersion;
+        going = std::move(found->second);
+        if (vault_ == nullptr) {
+            entries_.erase(found);
+            return Removal::Done;
+        }
+        // The id stays taken, and nobody finds it, until the disk knows.
+        found->second = std::make_shared<Entry>();
+        found->second->is_being_made = true;
+    }
+    try {
+        vault_->remove(session.facts().birth);
+    } catch (...) {
+        const std::unique_lock lock(mutex_);
+        entries_[id] = going;
+        throw;
+    }
     const std::unique_lock lock(mutex_);
-    const auto found = sessions_.find(session.facts().id);
-    if (found == sessions_.end() || found->second.get() != &session) return Removal::Gone;
-    if (expected && *expected != session.view().version) return Removal::OtherVersion;
-    last = std::move(found->second);
-    sessions_.erase(found);
+    entries_.erase(id);
     return Removal::Done;
 }
 
 bool SessionStore::is_kept(const Session& session) const {
-    return find(session.facts().id).get() == &session;
+    const std::shared_lock lock(mutex_);
+    const auto found = entries_.find(session.facts().id);
+    return found != entries_.end() && found->second->session.get() == &session;
 }
 
 std::size_t SessionStore::size() const {
     const std::shared_lock lock(mutex_);
-    return sessions_.size();
+    return entries_.size();
 }
 
 std::size_t SessionStore::memory_bytes() const {
@@ -77,9 +157,30 @@ std::size_t SessionStore::memory_bytes() const {
     return sum_of_memory();
 }
 
-std::optional<BorrowedMemory> SessionStore::borrow(std::size_t bytes) {
+SessionTotals SessionStore::totals() const {
+    const std::shared_lock lock(mutex_);
+    SessionTotals totals;
+    totals.memory_bytes = sum_of_memory();
+    totals.sessions = entries_.size();
+    for (const auto& [id, entry] : entries_) {
+        if (!entry->damage.empty()) ++totals.out_of_service;
+        if (entry->session) ++totals.in_memory;
+        totals.triangles +=
+            entry->session ? entry->session->counts().triangles : entry->counts.triangles;
+    }
+    return totals;
+}
+
+bool SessionStore::has_room(std::size_t bytes) {
+    Freed freed;
     const std::unique_lock lock(mutex_);
-    if (sum_of_memory() + bytes > limits_.max_memory_bytes) return std::nullopt;
+    return make_room(bytes, freed);
+}
+
+std::optional<BorrowedMemory> SessionStore::borrow(std::size_t bytes) {
+    Freed freed;
+    const std::unique_lock lock(mutex_);
+    if (!make_room(bytes, freed)) return std::nullopt;
     borrowed_ += bytes;
     return std::optional<BorrowedMemory>(std::in_place, borrowed_, bytes);
 }
@@ -87,9 +188,17 @@ std::optional<BorrowedMemory> SessionStore::borrow(std::size_t bytes) {
 /// Requires: the lock.
 std::size_t SessionStore::sum_of_memory() const {
     std::size_t sum = borrowed_;
-    for (const auto& [id, session] : sessions_)
-        sum += session->view().memory_bytes;
+    for (const auto& [id, entry] : entries_) {
+        if (entry->session)
+            sum += entry->session->counts().memory_bytes;
+        else if (entry->is_being_made)
+            sum += entry->counts.memory_bytes;
+    }
     return sum;
+}
+
+void SessionStore::touch(Entry& entry) const {
+    entry.used = unix_seconds();
 }
 
 }  // namespace tinsmith::server

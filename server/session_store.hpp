@@ -2,9 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
@@ -15,6 +19,7 @@
 #include "api/terrain.hpp"
 #include "server/limits.hpp"
 #include "server/session.hpp"
+#include "server/session_vault.hpp"
 
 namespace tinsmith::server {
 
@@ -23,6 +28,15 @@ enum class StoreRefusal {
     TooMany,    ///< Limits::max_sessions are there already
     NoMemory,   ///< Limits::max_memory_bytes would be passed
     IdIsTaken,  ///< the id of choice exists
+};
+
+/// Of all sessions together, at about the same time.
+struct SessionTotals {
+    std::size_t sessions = 0;
+    std::size_t in_memory = 0;
+    std::size_t out_of_service = 0;
+    std::size_t triangles = 0;
+    std::size_t memory_bytes = 0;  ///< with what is borrowed
 };
 
 enum class Removal { Done, Gone, OtherVersion };
@@ -41,51 +55,108 @@ class BorrowedMemory {
     std::size_t bytes_;
 };
 
-/// All sessions of this process, by id. A session that is removed lives on for those who still
-/// hold it. Lookups take a shared lock for the time of a map search.
+/// All sessions of this service, by id: in memory alone, or, with a vault, in memory as long as
+/// there is room and on the disk always. A session that is removed lives on for those who still
+/// hold it. Lookups take a shared lock for the time of a map search; one of a session that is not
+/// in memory loads it, and whoever else asks for that one waits for it, nobody else.
+///
+/// Laws, with a vault: a session that is told of is stored; one that nobody holds leaves memory
+/// where another needs it, the one used longest ago first, and comes back with the next request as
+/// it was; one that cannot be loaded is out of service until it is removed.
 class SessionStore {
   public:
-    explicit SessionStore(Limits limits) : limits_(limits) {}
+    /// No vault: sessions end with the process. The vault outlives the store.
+    explicit SessionStore(Limits limits, SessionVault* vault = nullptr)
+        : limits_(limits), vault_(vault) {}
+
+    /// Takes up what the vault has, without loading anything. Before the first request. Returns
+    /// what is damaged, a sentence for each. Throws StorageFault.
+    std::vector<std::string> take_up();
+    /// Called with each session that was loaded, before anybody gets it. Set before the first
+    /// request.
+    std::function<void(const LoadedSession&)> when_loaded;
 
     using Added = std::variant<std::shared_ptr<Session>, StoreRefusal>;
 
-    /// Keeps a mesh as a new session. No id: a random one of 128 bits.
+    /// Keeps a mesh as a new session. No id: a random one of 128 bits. Throws StorageFault.
     Added add(core::Tin tin, const api::Terrain& about, std::optional<std::string> id = {});
 
-    /// Keeps a copy of a session as a new one with a random id.
+    /// Keeps a copy of a session as a new one with a random id. Throws StorageFault.
     Added fork(const Session& session);
 
-    /// Null where there is none.
-    std::shared_ptr<Session> find(const std::string& id) const;
+    /// Null where there is none. Throws SessionIsDamaged, StorageFault, and std::bad_alloc where
+    /// there is no room to load it.
+    std::shared_ptr<Session> find(const std::string& id);
+    /// Whether there is one, loaded or not.
+    bool contains(const std::string& id) const;
 
-    /// All sessions in the order of their ids.
-    std::vector<std::shared_ptr<Session>> all() const;
+    /// At most `limit` sessions in the order of their ids, those after one. Loads nothing.
+    struct Page {
+        std::vector<api::SessionView> views;
+        bool more = false;
+    };
+    Page page(const std::string& after, std::size_t limit) const;
+    /// The session's, with when it ends if nobody asks for it.
+    api::SessionView view(const Session& session) const;
 
     /// Ends this session, unless it has been removed or, where one is expected, has another version
     /// than that. An edit that finishes later finds itself `is_kept` no more: of an edit and a
-    /// removal at the same time each sees the other or comes after it.
+    /// removal at the same time each sees the other or comes after it. Throws StorageFault.
     Removal remove(const Session& session, std::optional<std::uint64_t> expected = {});
+    /// Ends a session that is out of service; nothing where it is not. Throws StorageFault.
+    std::optional<api::SessionView> remove_damaged(const std::string& id);
+    /// Ends those that nobody asked for since then. Returns their births.
+    std::vector<std::string> remove_unused_since(std::int64_t unix_seconds);
 
     /// Whether this very session, and not another under its id, is still here.
     bool is_kept(const Session& session) const;
 
     std::size_t size() const;
 
-    /// Of all sessions together and of what is borrowed. Waits for no edit.
+    /// Of all sessions in memory together and of what is borrowed. Waits for no edit.
     std::size_t memory_bytes() const;
+    /// Waits for no edit.
+    SessionTotals totals() const;
 
-    /// Memory for copies; nothing where Limits::max_memory_bytes would be passed. The store
-    /// outlives it.
+    /// Whether so many bytes more are within Limits::max_memory_bytes, once sessions that nobody
+    /// holds have left memory.
+    bool has_room(std::size_t bytes);
+    /// Memory for copies; nothing where there is no room. The store outlives it.
     std::optional<BorrowedMemory> borrow(std::size_t bytes);
 
+    /// Loads sessions, the ones used last first, while there is room and `go_on` says so.
+    void load_all(const std::function<bool()>& go_on);
+    /// Stores a session as it is. Nothing to do for those that are not in memory. Throws
+    /// StorageFault, std::bad_alloc.
+    void snapshot(const std::string& id);
+    std::vector<std::string> ids_in_memory() const;
+
   private:
+    struct Entry {
+        SessionFacts facts;
+        SessionCounts counts;              ///< of one that is not in memory
+        std::shared_ptr<Session> session;  ///< null: not in memory
+        std::string damage;                ///< not empty: out of service
+        bool is_being_made = false;        ///< nobody is to find it yet
+        std::atomic<std::int64_t> used{0};
+        std::mutex loading;  ///< held while it is loaded; taken before the map's
+    };
+    using EntryPtr = std::shared_ptr<Entry>;
+    using Entries = std::map<std::string, EntryPtr>;
+    using Freed = std::vector<std::shared_ptr<Session>>;  ///< to be freed outside of the lock
+
     Added keep(std::shared_ptr<Session> session);
+    std::shared_ptr<Session> load(Entry& entry);
+    bool make_room(std::size_t bytes, Freed& freed);
     std::size_t sum_of_memory() const;
+    api::SessionView view_of_entry(const Entry& entry) const;
+    void touch(Entry& entry) const;
 
     const Limits limits_;
+    SessionVault* const vault_;
     std::atomic<std::size_t> borrowed_{0};
-    mutable std::shared_mutex mutex_;  ///< guards the map, not the sessions
-    std::map<std::string, std::shared_ptr<Session>> sessions_;
+    mutable std::shared_mutex mutex_;  ///< guards the map and its entries, not the sessions
+    Entries entries_;
 };
 
 }  // namespace tinsmith::server

@@ -21,7 +21,7 @@ std::variant<StoredSession, JournalFault> read_session(Database& database, std::
     // One look at all of it: a new snapshot may be written meanwhile, and the old one swept.
     if (const auto fault = database.run("BEGIN")) return fault_from(*fault, "reading");
     RowReader reader(database);
-    SessionFacts facts;
+    StoredFacts facts;
     if (auto fault = reader.session(number, facts)) return std::move(*fault);
     if (facts.birth != birth)
         return damaged(place_of("the row", birth), "it is that of another session");
