@@ -65,6 +65,7 @@ constexpr std::array kTable{
     Row{JobUnfinished, "job-unfinished", "The job has not ended yet", 409},
     Row{Stopped, "stopped", "The work was stopped", 503},
     Row{TooManyJobs, "too-many-jobs", "No room for another job", 503},
+    Row{NotReady, "not-ready", "The server is not ready", 503},
     Row{Internal, "internal", "The server failed", 500},
 };
 

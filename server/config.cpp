@@ -28,6 +28,10 @@ constexpr const char* kServeFooter =
     "  port = 9000\n"
     "  demo = true\n"
     "The command line comes first, then the file, then the environment.\n\n"
+    "SIGTERM and SIGINT: /readyz says 503, for --drain-delay seconds it still listens, requests\n"
+    "under way have --grace seconds to end, then edits give up and nothing of them stays; 5\n"
+    "seconds later the process has ended whatever it did. Its exit code is 0. A second signal\n"
+    "ends it at once.\n\n"
     "Examples:\n"
     "  tinsmith serve --demo\n"
     "  tinsmith serve --port 0 --port-file /run/tinsmith.port\n"
@@ -171,6 +175,19 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     serve->add_option("--log-level", config.log_level, "debug, info, warning, error or off")
         ->envname("TINSMITH_LOG_LEVEL")
         ->transform(CLI::CheckedTransformer(kLevels, CLI::ignore_case));
+    static const std::map<std::string, LogFormat> kFormats{
+        {"auto", LogFormat::Auto}, {"json", LogFormat::Json}, {"text", LogFormat::Text}};
+    serve
+        ->add_option("--log-format", config.log_format,
+                     "json, text, or auto: text on a terminal, else json")
+        ->envname("TINSMITH_LOG_FORMAT")
+        ->transform(CLI::CheckedTransformer(kFormats, CLI::ignore_case));
+    add_setting(*serve, "grace", config.grace,
+                "Seconds that requests under way may take when it stops")
+        ->check(CLI::Range(0.0, 3600.0));
+    add_setting(*serve, "drain_delay", config.drain_delay,
+                "Seconds for which it still listens then, for balancers to notice")
+        ->check(CLI::Range(0.0, 3600.0));
     return serve;
 }
 

@@ -21,6 +21,9 @@ struct ServeConfig {
     std::string viewer;        ///< folder of the built page; empty: the bundled one, if any
     Policy policy;
     LogLevel log_level = LogLevel::Info;
+    LogFormat log_format = LogFormat::Auto;
+    double grace = 10.0;       ///< seconds for requests under way once the server stops
+    double drain_delay = 0.0;  ///< seconds for which it still listens when it is told to
 };
 
 /// `tinsmith integrate`: the options go through the same parsers as those of a request.

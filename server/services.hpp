@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <utility>
 
 #include "api/formats/read_limits.hpp"
@@ -10,8 +11,10 @@
 #include "server/kept_answers.hpp"
 #include "server/limits.hpp"
 #include "server/mesh_cache.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/page_files.hpp"
 #include "server/policy.hpp"
+#include "server/readiness.hpp"
 #include "server/session_store.hpp"
 
 namespace tinsmith::server {
@@ -43,12 +46,18 @@ struct Services {
 
     const Limits limits;
     const Policy policy;
-    PageFiles page;  ///< set before the first request, if at all
+    Metrics metrics;      ///< what is added to it may look at all of the below
+    Readiness readiness;  ///< likewise
+    PageFiles page;       ///< set before the first request, if at all
     SessionStore sessions;
     MeshCache meshes;                   ///< encoded
     KeptAnswers answers;                ///< for retries by key
     std::atomic<bool> stopping{false};  ///< edits under way give up when it turns true
-    Jobs jobs;                          ///< last: their work uses all of the above
+    /// Called once when the server stops, on one thread: no request is under way any more, nor a
+    /// job. Sessions are snapshotted here, as many as there is time for until then; what comes
+    /// later ends with the process.
+    std::function<void(std::chrono::steady_clock::time_point until)> before_exit;
+    Jobs jobs;  ///< last: their work uses all of the above
 };
 
 }  // namespace tinsmith::server

@@ -77,6 +77,17 @@ std::size_t SessionStore::memory_bytes() const {
     return sum_of_memory();
 }
 
+SessionTotals SessionStore::totals() const {
+    SessionTotals totals{0, 0, borrowed_};
+    for (const auto& session : all()) {
+        const api::SessionView view = session->view();
+        ++totals.sessions;
+        totals.triangles += view.triangles;
+        totals.memory_bytes += view.memory_bytes;
+    }
+    return totals;
+}
+
 std::optional<BorrowedMemory> SessionStore::borrow(std::size_t bytes) {
     const std::unique_lock lock(mutex_);
     if (sum_of_memory() + bytes > limits_.max_memory_bytes) return std::nullopt;

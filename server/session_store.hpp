@@ -25,6 +25,13 @@ enum class StoreRefusal {
     IdIsTaken,  ///< the id of choice exists
 };
 
+/// Of all sessions together, at about the same time.
+struct SessionTotals {
+    std::size_t sessions = 0;
+    std::size_t triangles = 0;
+    std::size_t memory_bytes = 0;  ///< with what is borrowed
+};
+
 enum class Removal { Done, Gone, OtherVersion };
 
 /// Memory for copies that a request works on, given back with the object.
@@ -73,6 +80,9 @@ class SessionStore {
 
     /// Of all sessions together and of what is borrowed. Waits for no edit.
     std::size_t memory_bytes() const;
+
+    /// Waits for no edit.
+    SessionTotals totals() const;
 
     /// Memory for copies; nothing where Limits::max_memory_bytes would be passed. The store
     /// outlives it.

@@ -122,6 +122,7 @@ Handler keyed(Services& services, Handler handler) {
         const KeptAnswers::Name name{session ? session->facts().birth : std::string(),
                                      std::move(*key)};
         auto verdict = services.answers.begin(name, print_of(request));
+        if (std::holds_alternative<Response>(verdict)) services.metrics.answer_replayed();
         if (auto refusal = std::visit(Refusals{request}, verdict)) return *std::move(refusal);
         const Claim claim(services.answers, name);
         Response response = handler(request, arguments);

@@ -98,8 +98,10 @@ std::vector<api::NamedOption> options_of_query(const Request& request) {
     return options;
 }
 
-Response gltf_response(const Request& request, const core::MeshData& mesh,
+Response gltf_response(Metrics& metrics, const Request& request, const core::MeshData& mesh,
                        const api::GltfOptions& options, const GltfAnswer& as) {
+    const EncodeMeter meter(metrics, as.type == kGlb ? EncodeFormat::Glb : EncodeFormat::Gltf,
+                            options.compression);
     auto written = as.type == kGlb ? api::write_glb(mesh, options, as.regions)
                                    : api::write_gltf(mesh, options, as.regions);
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
@@ -117,8 +119,9 @@ Response gltf_response(const Request& request, const core::MeshData& mesh,
     return response;
 }
 
-Response delta_response(const Request& request, const Session& session, std::uint64_t version,
-                        const std::optional<api::MeshDelta>& delta) {
+Response delta_response(Metrics& metrics, const Request& request, const Session& session,
+                        std::uint64_t version, const std::optional<api::MeshDelta>& delta) {
+    const EncodeMeter meter(metrics, EncodeFormat::Delta);
     if (delta) return ok(kDelta, api::write_delta(*delta));
     return refuse(request, api::ProblemType::OutOfMemory,
                   "There is no memory to send the delta now: get it later from /v1/sessions/" +
@@ -127,8 +130,8 @@ Response delta_response(const Request& request, const Session& session, std::uin
                       ".");
 }
 
-Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run,
+Response mesh_after(Metrics& metrics, const Request& request, const Session& session,
+                    std::uint64_t version, const std::optional<core::MeshData>& mesh, bool dry_run,
                     std::string_view type) {
     const std::string made =
         " The edit was made: the session has version " + std::to_string(version) + ".";
@@ -139,7 +142,8 @@ Response mesh_after(const Request& request, const Session& session, std::uint64_
     api::GltfOptions options;
     options.unit_to_metre = api::metres_per(session.facts().unit);
     options.crs = session.facts().crs;
-    return gltf_response(request, *mesh, options, {type, nullptr, dry_run ? std::string() : made});
+    return gltf_response(metrics, request, *mesh, options,
+                         {type, nullptr, dry_run ? std::string() : made});
 }
 
 Response refuse_delta_of_dry_run(const Request& request) {

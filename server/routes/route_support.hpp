@@ -13,6 +13,7 @@
 #include "api/requests.hpp"
 #include "server/edit.hpp"
 #include "server/http_message.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/routes/preconditions.hpp"
 #include "server/routes/step.hpp"
 #include "server/services.hpp"
@@ -49,17 +50,18 @@ struct GltfAnswer {
 };
 
 /// The mesh as glTF, with headers that say what rounding did, or why it cannot be written.
-Response gltf_response(const Request& request, const core::MeshData& mesh,
+Response gltf_response(Metrics& metrics, const Request& request, const core::MeshData& mesh,
                        const api::GltfOptions& options, const GltfAnswer& as);
 
 /// What changed, or why it cannot be sent though the edit was made.
-Response delta_response(const Request& request, const Session& session, std::uint64_t version,
-                        const std::optional<api::MeshDelta>& delta);
+Response delta_response(Metrics& metrics, const Request& request, const Session& session,
+                        std::uint64_t version, const std::optional<api::MeshDelta>& delta);
 
 /// The mesh after an edit as glTF of that type. The edit is made even where its mesh cannot be
 /// sent, and the answer says so, unless it was a dry run.
-Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type);
+Response mesh_after(Metrics& metrics, const Request& request, const Session& session,
+                    std::uint64_t version, const std::optional<core::MeshData>& mesh, bool dry_run,
+                    std::string_view type);
 
 /// 400: a dry run makes no version.
 Response refuse_delta_of_dry_run(const Request& request);

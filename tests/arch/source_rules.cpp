@@ -34,7 +34,7 @@ struct Home {
     const char* files;    ///< regular expression for the files that may include it
     bool one_file_only;
 };
-const std::array<Home, 15> kHomes = {{
+const std::array<Home, 16> kHomes = {{
     {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http_server\.cpp)", true},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},
@@ -47,6 +47,7 @@ const std::array<Home, 15> kHomes = {{
     {"nlohmann-json", R"(nlohmann/.*)", R"((api|server)/.*\.cpp)", false},
     {"CLI11", R"(CLI/.*)", R"(server/.*\.cpp)", false},
     {"spdlog", R"((spdlog|fmt)/.*)", R"(server/.*\.cpp)", false},
+    {"prometheus-cpp", R"(prometheus/.*)", R"(server/([a-z_]+/)*[a-z_]*metrics[a-z_/]*\.cpp)", false},
     {"OpenSSL", R"(openssl/.*)", R"(server/digest\.cpp)", true},
     {"zlib", R"(zlib\.h)", R"(server/gzip\.cpp)", true},
     {"the system's memory", R"(sys/mman\.h)", R"(core/mesh/large_blocks\.cpp)", true},
