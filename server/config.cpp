@@ -184,9 +184,11 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
         ->transform(CLI::CheckedTransformer(kFormats, CLI::ignore_case));
     add_setting(*serve, "grace", config.grace,
                 "Seconds that requests under way may take when it stops")
+        ->check(digit_first())
         ->check(CLI::Range(0.0, 3600.0));
     add_setting(*serve, "drain_delay", config.drain_delay,
                 "Seconds for which it still listens then, for balancers to notice")
+        ->check(digit_first())
         ->check(CLI::Range(0.0, 3600.0));
     return serve;
 }

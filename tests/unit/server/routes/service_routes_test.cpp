@@ -13,6 +13,10 @@ namespace {
 
 using testing_support::PrometheusText;
 
+/// Crosses the edge between the two triangles.
+constexpr const char* kAcross =
+    R"({"type": "Polygon", "coordinates": [[[1,2],[5,2],[5,7],[1,7],[1,2]]]})";
+
 class ServiceRoutes : public Handlers {
   protected:
     void SetUp() override { set_log_level(LogLevel::Off); }
@@ -76,8 +80,8 @@ TEST_F(ServiceRoutes, MetricsWaitForNoEncoding) {
 TEST_F(ServiceRoutes, MetricsTellWhatWasDoneAndWhatThereIs) {
     const std::string path = make_session();
     const NameValue key{"idempotency-key", "once"};
-    const auto report = json::parse(post(path + "/polygons", kParcel, {key}).body);
-    EXPECT_EQ(post(path + "/polygons", kParcel, {key}).status, 200);
+    const auto report = json::parse(post(path + "/polygons", kAcross, {key}).body);
+    EXPECT_EQ(post(path + "/polygons", kAcross, {key}).status, 200);
     EXPECT_EQ(ask("POST", path + "/undo").status, 200);
     EXPECT_EQ(ask("POST", path + "/redo").status, 200);
     for (const char* mesh : {"/mesh.glb", "/mesh.glb", "/mesh.obj", "/mesh.xml"})
