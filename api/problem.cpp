@@ -61,10 +61,14 @@ constexpr std::array kTable{
     Row{VersionGone, "version-gone", "The version is no longer kept", 410},
     Row{TooManySessions, "too-many-sessions", "No room for another session", 429},
     Row{OutOfMemory, "out-of-memory", "Not enough memory", 507},
+    Row{StorageUnavailable, "storage-unavailable", "Nothing can be stored now", 503},
+    Row{SessionOutOfService, "session-out-of-service", "The session cannot be read", 503},
+    Row{SessionReadOnly, "session-read-only", "The session takes no changes", 409},
     Row{NoSuchJob, "no-such-job", "There is no such job", 404},
     Row{JobUnfinished, "job-unfinished", "The job has not ended yet", 409},
     Row{Stopped, "stopped", "The work was stopped", 503},
     Row{TooManyJobs, "too-many-jobs", "No room for another job", 503},
+    Row{NotReady, "not-ready", "The server is not ready", 503},
     Row{Internal, "internal", "The server failed", 500},
 };
 

@@ -50,10 +50,14 @@ enum class ProblemType {
     VersionGone,     ///< no longer kept
     TooManySessions,
     OutOfMemory,
+    StorageUnavailable,   ///< the disk takes nothing now; nothing was changed
+    SessionOutOfService,  ///< what is stored of it is damaged
+    SessionReadOnly,      ///< it is kept as it is
     NoSuchJob,
     JobUnfinished,  ///< its result is asked for
     Stopped,        ///< the work was cancelled: time limit, shutdown, or its job was deleted
     TooManyJobs,
+    NotReady,  ///< the server starts, stops, or lacks what it needs
     Internal,
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,15 @@ Json json_of_repairs(const std::vector<core::Repair>& repairs) {
     return list;
 }
 
+/// RFC 3339: "2026-11-26T10:00:00Z".
+std::string utc_text(std::int64_t unix_seconds) {
+    const std::time_t time = unix_seconds;
+    std::tm parts{};
+    gmtime_r(&time, &parts);
+    std::array<char, 64> text{};
+    return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
 Json json_of_session(const SessionView& s) {
     const core::Point3& low = s.bounds.min;
     const core::Point3& high = s.bounds.max;
@@ -47,6 +57,7 @@ Json json_of_session(const SessionView& s) {
                  {"memory_bytes", s.memory_bytes}};
     if (s.repairs) json["repairs"] = json_of_repairs(*s.repairs);
     if (!s.notes.empty()) json["notes"] = s.notes;
+    if (s.expires) json["expires"] = utc_text(*s.expires);
     return json;
 }
 

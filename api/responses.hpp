@@ -30,6 +30,8 @@ struct SessionView {
     std::size_t memory_bytes = 0;
     std::optional<std::vector<core::Repair>> repairs = std::nullopt;  ///< left out without
     std::vector<std::string> notes = {};                              ///< left out when empty
+    /// When it ends if nobody asks for it, Unix seconds; left out without.
+    std::optional<std::int64_t> expires = std::nullopt;
 };
 
 /// What is told of an edit. `polygon_ids` and `report.shapes` go together, one for one.

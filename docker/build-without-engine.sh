@@ -63,7 +63,7 @@ echo "Starting in the image: ${command[*]}"
 "${image[@]}" run --isolation chroot --env "TINSMITH_PORT=$port" "$container" -- "${command[@]}" >"$scratch/log" 2>&1 &
 server=$!
 for _ in {1..150}; do
-    curl --silent --fail "http://127.0.0.1:$port/healthz" >/dev/null && break
+    curl --silent --fail "http://127.0.0.1:$port/readyz" >/dev/null && break
     kill -0 "$server" 2>/dev/null || break
     sleep 0.2
 done

@@ -26,7 +26,7 @@ fail() {
     exit 1
 }
 
-curl "$base/healthz" >/dev/null || fail "$base/healthz does not answer"
+curl "$base/readyz" >/dev/null || fail "$base/readyz does not say that it is ready"
 
 mapfile -t lines < <(grep '^curl ' "$project/README.md")
 ((${#lines[@]} >= 3)) || fail "the README has fewer than three curl lines"

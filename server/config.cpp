@@ -18,7 +18,8 @@ constexpr const char* kTopFooter =
     "Examples:\n"
     "  tinsmith serve --demo\n"
     "  tinsmith integrate terrain.tif parcels.geojson -o out.glb --report report.json\n"
-    "  tinsmith check mesh.json\n\n"
+    "  tinsmith check mesh.json\n"
+    "  tinsmith backup --data /data /backup/monday\n\n"
     "Exit codes: 0 done, 1 the input was refused, 2 wrong usage.";
 
 constexpr const char* kServeFooter =
@@ -28,8 +29,13 @@ constexpr const char* kServeFooter =
     "  port = 9000\n"
     "  demo = true\n"
     "The command line comes first, then the file, then the environment.\n\n"
+    "SIGTERM and SIGINT: /readyz says 503, for --drain-delay seconds it still listens, requests\n"
+    "under way have --grace seconds to end, then edits give up and nothing of them stays; 5\n"
+    "seconds later the process has ended whatever it did. Its exit code is 0. A second signal\n"
+    "ends it at once.\n\n"
     "Examples:\n"
     "  tinsmith serve --demo\n"
+    "  tinsmith serve --data /data\n"
     "  tinsmith serve --port 0 --port-file /run/tinsmith.port\n"
     "  TINSMITH_MAX_SESSIONS=8 tinsmith serve";
 
@@ -113,6 +119,9 @@ void add_limits(CLI::App& app, Limits& limits) {
     add("mesh_cache", limits.mesh_cache, "Bytes of encoded meshes to keep; 0: none")
         ->transform(bytes)
         ->transform(digit_first());
+    add("session_ttl", limits.session_ttl,
+        "Seconds for which a session lives that nobody asks for; 0: for ever")
+        ->check(digit_first());
     add("kept_answers", limits.kept_answers, "Bytes of answers to keep for retries by key")
         ->transform(bytes)
         ->transform(digit_first());
@@ -159,6 +168,8 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
         ->envname("TINSMITH_DEMO");
     add_setting(*serve, "demo_terrain", config.demo_terrain, "Load this terrain for --demo");
     add_setting(*serve, "viewer", config.viewer, "Folder of the built page for /");
+    add_setting(*serve, "data", config.data,
+                "Folder to store sessions in, made if need be; none: they end with the process");
     add_setting(*serve, "threads", http.threads, "Connections served at the same time")
         ->check(CLI::Range(2, 1024));
     add_limits(*serve, http.limits);
@@ -171,6 +182,21 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     serve->add_option("--log-level", config.log_level, "debug, info, warning, error or off")
         ->envname("TINSMITH_LOG_LEVEL")
         ->transform(CLI::CheckedTransformer(kLevels, CLI::ignore_case));
+    static const std::map<std::string, LogFormat> kFormats{
+        {"auto", LogFormat::Auto}, {"json", LogFormat::Json}, {"text", LogFormat::Text}};
+    serve
+        ->add_option("--log-format", config.log_format,
+                     "json, text, or auto: text on a terminal, else json")
+        ->envname("TINSMITH_LOG_FORMAT")
+        ->transform(CLI::CheckedTransformer(kFormats, CLI::ignore_case));
+    add_setting(*serve, "grace", config.grace,
+                "Seconds that requests under way may take when it stops")
+        ->check(digit_first())
+        ->check(CLI::Range(0.0, 3600.0));
+    add_setting(*serve, "drain_delay", config.drain_delay,
+                "Seconds for which it still listens then, for balancers to notice")
+        ->check(digit_first())
+        ->check(CLI::Range(0.0, 3600.0));
     return serve;
 }
 
@@ -213,6 +239,19 @@ CLI::App* add_check(CLI::App& app, CheckConfig& config) {
     return check;
 }
 
+CLI::App* add_backup(CLI::App& app, BackupConfig& config) {
+    CLI::App* backup =
+        app.add_subcommand("backup", "Copy the sessions of a folder, also while a server has it");
+    backup->footer(
+        "TO is a new folder: everything that was acknowledged before is in it. A server started\n"
+        "with --data TO has the sessions as they were then.\n\n"
+        "Example:\n"
+        "  tinsmith backup --data /data /backup/monday");
+    add_setting(*backup, "data", config.data, "The folder that the server has")->required();
+    backup->add_option("TO", config.to, "The copy")->required();
+    return backup;
+}
+
 }  // namespace
 
 Command parse_command_line(int argc, const char* const* argv) {
@@ -228,7 +267,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     CheckConfig check;
     const CLI::App* serve_command = add_serve(app, serve);
     const CLI::App* integrate_command = add_integrate(app, integrate);
-    add_check(app, check);
+    BackupConfig backup;
+    const CLI::App* check_command = add_check(app, check);
+    add_backup(app, backup);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ConfigError& error) {
@@ -242,7 +283,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     }
     if (serve_command->parsed()) return serve;
     if (integrate_command->parsed()) return integrate;
-    return check;
+    if (check_command->parsed()) return check;
+    return backup;
 }
 
 }  // namespace tinsmith::server

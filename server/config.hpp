@@ -19,8 +19,12 @@ struct ServeConfig {
     bool demo = false;
     std::string demo_terrain;  ///< empty: the bundled one
     std::string viewer;        ///< folder of the built page; empty: the bundled one, if any
+    std::string data;          ///< folder that sessions are stored in; empty: memory alone
     Policy policy;
     LogLevel log_level = LogLevel::Info;
+    LogFormat log_format = LogFormat::Auto;
+    double grace = 10.0;       ///< seconds for requests under way once the server stops
+    double drain_delay = 0.0;  ///< seconds for which it still listens when it is told to
 };
 
 /// `tinsmith integrate`: the options go through the same parsers as those of a request.
@@ -34,6 +38,12 @@ struct IntegrateConfig {
     std::vector<api::NamedOption> terrain_options;
 };
 
+/// `tinsmith backup`.
+struct BackupConfig {
+    std::string data;
+    std::string to;
+};
+
 /// `tinsmith check`.
 struct CheckConfig {
     std::string mesh;
@@ -45,7 +55,7 @@ inline constexpr int kExitRefused = 1;  ///< the input or the surroundings do no
 inline constexpr int kExitUsage = 2;    ///< the command line makes no sense
 
 /// What to do, or the exit code where that is done already (help, version, wrong usage).
-using Command = std::variant<int, ServeConfig, IntegrateConfig, CheckConfig>;
+using Command = std::variant<int, ServeConfig, IntegrateConfig, CheckConfig, BackupConfig>;
 
 /// Reads command line, configuration file and environment, in this order of precedence. Writes
 /// help to standard output and complaints to standard error.

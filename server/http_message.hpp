@@ -11,6 +11,8 @@
 
 namespace tinsmith::server {
 
+class RouteMeter;
+
 using NameValue = std::pair<std::string, std::string>;
 
 /// One HTTP request as handlers see it: plain data, no socket, no library type.
@@ -50,6 +52,8 @@ struct Response {
     std::vector<NameValue> headers;
     std::string body;
     bool close = false;  ///< end the connection: what follows on it cannot be trusted
+    /// The pattern of the path that answered; null: none did. It lives as long as the router.
+    const RouteMeter* route = nullptr;
 
     Response& with(std::string name, std::string value) {
         headers.emplace_back(std::move(name), std::move(value));

@@ -51,8 +51,8 @@ bool is_library_header(const std::string& name) {
     return std::find(kLibraryHeaders.begin(), kLibraryHeaders.end(), name) != kLibraryHeaders.end();
 }
 
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// The sender's trace with a span of our own; nothing where there is none, or none valid. Repeated
@@ -145,8 +145,11 @@ void write_response(const httplib::Request& raw, httplib::Response& out, Respons
 
 class HttpServer::Impl {
   public:
-    Impl(HttpOptions options, Answer answer, Finish finish)
-        : options_(std::move(options)), answer_(std::move(answer)), finish_(std::move(finish)) {
+    Impl(HttpOptions options, Answer answer, Finish finish, Told told)
+        : options_(std::move(options)),
+          answer_(std::move(answer)),
+          finish_(std::move(finish)),
+          told_(std::move(told)) {
         configure();
         install_handlers();
     }
@@ -178,7 +181,10 @@ class HttpServer::Impl {
         return fine;
     }
 
+    void drain() { draining_ = true; }
+
     void stop() {
+        draining_ = true;
         stopped_ = true;
         // The library passes over a stop that comes while it starts, so it is asked again until
         // it has let go of the socket.
@@ -229,12 +235,13 @@ class HttpServer::Impl {
         server_.set_error_handler([this](const httplib::Request& raw, httplib::Response& out) {
             if (!out.has_header("X-Request-Id")) answer_for_library(raw, out);
         });
-        server_.set_exception_handler(
-            [](const httplib::Request&, httplib::Response& out, const std::exception_ptr&) {
-                log_error("an exception came as far as the HTTP library");
-                out.status = api::problem_status(api::ProblemType::Internal);
-            });
-        server_.set_post_routing_handler([](const httplib::Request&, httplib::Response& out) {
+        server_.set_exception_handler([](const httplib::Request&, httplib::Response& out,
+                                         const std::exception_ptr&) {
+            log_event(LogLevel::Error, "defect", "an exception came as far as the HTTP library");
+            out.status = api::problem_status(api::ProblemType::Internal);
+        });
+        server_.set_post_routing_handler([this](const httplib::Request&, httplib::Response& out) {
+            if (draining_ && !out.has_header("Connection")) out.set_header("Connection", "close");
             if (out.get_header_value("Connection") == "close") out.headers.erase("Keep-Alive");
             out.headers.erase("Accept-Ranges");
             const bool is_silent = out.status == kNotModified;
@@ -320,7 +327,7 @@ class HttpServer::Impl {
     void finish(const httplib::Request& raw, httplib::Response& out, const Request& request,
                 Response&& response, Clock::time_point start) const {
         finish_(request, response);
-        log_request(request, response, milliseconds_since(start));
+        told_(request, response, seconds_since(start));
         write_response(raw, out, std::move(response));
     }
 
@@ -349,14 +356,17 @@ class HttpServer::Impl {
     const HttpOptions options_;
     const Answer answer_;
     const Finish finish_;
+    const Told told_;
+    std::atomic<bool> draining_{false};
     int listener_ = -1;
     std::atomic<bool> stopped_{false};
     std::atomic<bool> finished_{false};
     httplib::Server server_;
 };
 
-HttpServer::HttpServer(HttpOptions options, Answer answer, Finish finish)
-    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer), std::move(finish))) {}
+HttpServer::HttpServer(HttpOptions options, Answer answer, Finish finish, Told told)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer), std::move(finish),
+                                   std::move(told))) {}
 
 HttpServer::~HttpServer() = default;
 
@@ -366,6 +376,10 @@ int HttpServer::bind(std::string& error) {
 
 bool HttpServer::serve() {
     return impl_->serve();
+}
+
+void HttpServer::drain() {
+    impl_->drain();
 }
 
 void HttpServer::stop() {

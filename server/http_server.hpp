@@ -26,16 +26,18 @@ struct HttpOptions {
 ///
 /// The library underneath is seen in http_server.cpp alone.
 /// Laws: the handler is called on one of `threads` threads and only with whole bodies; each answer
-/// is logged with its time; a refusal that leaves bytes unread closes the connection.
+/// is told with its time; a refusal that leaves bytes unread closes the connection.
 /// Not promised: pipelining (a second request in the same packet may be dropped), ranges, and
 /// service while all threads are held by slow clients; a proxy in front gives these.
 class HttpServer {
   public:
     using Answer = std::function<Response(const Request&)>;
     using Finish = std::function<void(const Request&, Response&)>;
+    using Told = std::function<void(const Request&, const Response&, double seconds)>;
 
-    /// `finish` has the last word on every answer, those that no handler gave included.
-    HttpServer(HttpOptions options, Answer answer, Finish finish);
+    /// `finish` has the last word on every answer, those that no handler gave included; `told`
+    /// hears of each, with the time since its head was read, and must not throw.
+    HttpServer(HttpOptions options, Answer answer, Finish finish, Told told);
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;
@@ -48,7 +50,10 @@ class HttpServer {
     /// Requires: bind() returned a port.
     bool serve();
 
-    /// From any thread but not from a signal handler.
+    /// From now on each answer ends its connection, so that clients go elsewhere.
+    void drain();
+
+    /// Closes the listening socket; drains. From any thread but not from a signal handler.
     void stop();
 
   private:

@@ -56,8 +56,8 @@ void log_end(const std::string& id, const Request& request, const Response& answ
              std::chrono::steady_clock::duration time) noexcept {
     try {
         const double ms = std::chrono::duration<double, std::milli>(time).count();
-        log_info("job " + id + " status=" + std::to_string(answer.status) +
-                 " ms=" + std::to_string(ms) + " request=" + request.id);
+        log_event(LogLevel::Info, "job_ended", "a job ended",
+                  {{"job", id}, {"status", answer.status}, {"ms", ms}, {"request", request.id}});
     } catch (const std::exception&) {
         // Want of memory: the job is done all the same.
     }
@@ -235,6 +235,11 @@ Jobs::Page Jobs::after(const std::string& id, std::size_t limit) {
         page.jobs.push_back(view_of(*job->second));
     }
     return page;
+}
+
+Jobs::Counts Jobs::counts() {
+    const std::lock_guard lock(mutex_);
+    return {queue_.size(), jobs_.size() - ended_.size() - queue_.size()};
 }
 
 Jobs::Result Jobs::result(const std::string& id) {

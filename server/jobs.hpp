@@ -72,6 +72,12 @@ class Jobs {
     /// In the order in which they came, those after the one of that id, which may be gone.
     Page after(const std::string& id, std::size_t limit);
 
+    struct Counts {
+        std::size_t queued = 0;
+        std::size_t running = 0;
+    };
+    Counts counts();
+
     struct NoSuchJob {};
     struct Unfinished {};
     struct NotKept {};  ///< it ended, but its answer was too large

@@ -63,23 +63,44 @@ KeptAnswers::Verdict KeptAnswers::begin(const Name& name, const std::string& pri
 }
 
 std::uint64_t KeptAnswers::keep(const Name& name, const Response& answer) {
+    std::uint64_t number = 0;
+    std::string print;
+    {
+        const std::lock_guard lock(mutex_);
+        number = count_ + 1;
+        const auto place = entries_.find(name);
+        if (place == entries_.end()) return ++count_;
+        print = place->second.print;
+        fill(place, answer, clock_());
+    }
+    if (when_kept) when_kept(name, print, answer);
+    return number;
+}
+
+void KeptAnswers::restore(const Name& name, const std::string& print, const Response& answer,
+                          std::chrono::seconds age) {
     const std::lock_guard lock(mutex_);
-    const std::uint64_t number = ++count_;
-    const auto place = entries_.find(name);
-    if (place == entries_.end()) return number;
+    Entry fresh;
+    fresh.print = print;
+    const auto [place, is_new] = entries_.try_emplace(name, std::move(fresh));
+    if (is_new) fill(place, answer, clock_() - age);
+}
+
+/// Requires: the lock.
+void KeptAnswers::fill(Entries::iterator place, const Response& answer, Time since) {
+    const Name& name = place->first;
     Entry& entry = place->second;
     entry.whole = bytes_of(name, answer) <= bounds_.bytes / kShare;
     if (entry.whole) entry.whole = copy_if_possible(answer, entry.answer);
     entry.bytes = bytes_of(name, entry.answer);
-    entry.since = clock_();
+    entry.since = since;
     auto& siblings = append(order_, of_scope_, name);
     entry.place = std::prev(order_.end());
     entry.running = false;
-    entry.number = number;
+    entry.number = ++count_;
     bytes_ += entry.bytes;
     if (siblings.size() > bounds_.per_scope) erase(entries_.find(siblings.front()));
     make_room();
-    return number;
 }
 
 void KeptAnswers::take_back(const Name& name, std::uint64_t number) noexcept {

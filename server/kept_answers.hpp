@@ -25,7 +25,8 @@ namespace tinsmith::server {
 /// is kept for `age`, or until `per_scope` others of its scope or `bytes` of all came after it. One
 /// that takes more than a share of the bytes is kept without its body: the retry is told that, and
 /// still not done again. A key whose request is running is never dropped.
-/// Not promised: memory of a key that has been dropped, or over a restart.
+/// Not promised: memory of a key that has been dropped; and over a restart that of what is not
+/// restored.
 class KeptAnswers {
   public:
     using Time = std::chrono::steady_clock::time_point;
@@ -64,6 +65,12 @@ class KeptAnswers {
     /// Drops all of one scope, but for what is running.
     void forget(const std::string& scope);
 
+    /// Keeps an answer that was given so long ago, unless there is one under the name.
+    void restore(const Name& name, const std::string& print, const Response& answer,
+                 std::chrono::seconds age);
+    /// Called with each answer that is kept whole, outside of the lock. Set before the first.
+    std::function<void(const Name&, const std::string& print, const Response&)> when_kept;
+
     std::size_t size() const;
     std::size_t bytes() const;
 
@@ -80,6 +87,7 @@ class KeptAnswers {
     };
     using Entries = std::map<Name, Entry>;
 
+    void fill(Entries::iterator place, const Response& answer, Time since);
     void make_room();
     void erase(Entries::iterator entry);
 

@@ -26,6 +26,7 @@ struct Limits {
     std::uint64_t job_seconds = 3600;                  ///< for which answers are kept
     std::size_t mesh_cache = std::size_t{256} << 20;   ///< bytes of encoded meshes
     std::size_t kept_answers = std::size_t{64} << 20;  ///< bytes, for retries by key
+    std::uint64_t session_ttl = 0;  ///< seconds for which one lives that nobody asks for; 0: ever
 };
 
 /// Shape of a request before its body is read; see `check_request`.

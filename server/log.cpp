@@ -1,22 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/log.hpp"
 
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "api/problem.hpp"
+#include "server/metrics/metrics.hpp"
 
 namespace tinsmith::server {
 
 namespace {
+
+constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%e%z %^%l%$ %v";
+constexpr const char* kJsonPattern = R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l",%v})";
+
+bool is_json = false;
 
 /// Made on first use and never taken down: threads may log until the process ends.
 spdlog::logger& logger() {
     static const auto kInstance = [] {
         auto made = std::make_shared<spdlog::logger>(
             "tinsmith", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-        made->set_pattern("%Y-%m-%dT%H:%M:%S.%e%z %^%l%$ %v");
-        made->flush_on(spdlog::level::info);
+        made->set_pattern(kTextPattern);
+        made->flush_on(spdlog::level::debug);
         return made;
     }();
     return *kInstance;
@@ -38,51 +51,67 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
     return spdlog::level::info;
 }
 
+LogLevel level_of(const Request& request, const Response& response) {
+    static constexpr std::array<std::string_view, 3> kProbes{"/healthz", "/readyz", "/metrics"};
+    static constexpr int kServerErrors = 500;
+    if (std::find(kProbes.begin(), kProbes.end(), request.path) != kProbes.end() &&
+        (response.status < kServerErrors || request.path == "/readyz")) {
+        return LogLevel::Debug;
+    }
+    if (response.status == api::problem_status(api::ProblemType::Internal)) return LogLevel::Error;
+    return response.status >= kServerErrors ? LogLevel::Warning : LogLevel::Info;
+}
+
 }  // namespace
 
 void set_log_level(LogLevel level) {
     logger().set_level(spdlog_level(level));
 }
 
-void log_info(std::string_view text) {
-    logger().info("{}", text);
+void set_log_format(LogFormat format) {
+    is_json =
+        format == LogFormat::Json || (format == LogFormat::Auto && ::isatty(STDERR_FILENO) == 0);
+    logger().set_pattern(is_json ? kJsonPattern : kTextPattern);
 }
 
-void log_warning(std::string_view text) {
-    logger().warn("{}", text);
-}
-
-void log_error(std::string_view text) {
-    logger().error("{}", sanitized(text));
+void log_event(LogLevel level, std::string_view event, std::string_view message,
+               std::initializer_list<LogField> fields) {
+    const auto at = spdlog_level(level);
+    if (!logger().should_log(at)) return;
+    if (!is_json) {
+        logger().log(at, "{}{}", sanitized(message, kLongestLogText), text_members(fields));
+        return;
+    }
+    std::vector<LogField> all{{"event", event}, {"message", message}};
+    all.insert(all.end(), fields.begin(), fields.end());
+    logger().log(at, "{}", json_members(all));
 }
 
 void log_request(const Request& request, const Response& response, double milliseconds) {
-    const auto level = response.status >= 500 ? spdlog::level::err : spdlog::level::info;
-    const std::string trace =
-        request.trace ? " trace=" + request.trace->trace_id + " span=" + request.trace->parent_id
-                      : std::string();
-    logger().log(level, "{} \"{}\" status={} bytes={} ms={:.2f} request={} client={}{}",
-                 sanitized(request.method), sanitized(request.path), response.status,
-                 response.body.size(), milliseconds, request.id, sanitized(request.remote_address),
-                 trace);
+    const auto at = spdlog_level(level_of(request, response));
+    if (!logger().should_log(at)) return;
+    std::vector<LogField> fields{
+        {"status", response.status},       {"bytes", bytes_sent(request, response)},
+        {"bytes_in", request.body.size()}, {"ms", milliseconds},
+        {"request", request.id},           {"client", request.remote_address}};
+    if (request.trace) {
+        fields.emplace_back("trace", request.trace->trace_id);
+        fields.emplace_back("span", request.trace->parent_id);
+    }
+    if (!is_json) {
+        logger().log(at, "{} \"{}\"{}", sanitized(request.method), sanitized(request.path),
+                     text_members(fields));
+        return;
+    }
+    std::vector<LogField> all{
+        {"event", "request"}, {"method", request.method}, {"path", request.path}};
+    if (response.route != nullptr) all.emplace_back("route", response.route->pattern());
+    all.insert(all.end(), fields.begin(), fields.end());
+    logger().log(at, "{}", json_members(all));
 }
 
-std::string sanitized(std::string_view text) {
-    static constexpr std::size_t kLongest = 200;
-    static constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string out;
-    for (const char c : text.substr(0, kLongest)) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte >= 0x20 && byte < 0x7f && c != '"' && c != '\\') {
-            out.push_back(c);
-        } else {
-            out += "\\x";
-            out.push_back(kDigits[byte >> 4]);
-            out.push_back(kDigits[byte & 15U]);
-        }
-    }
-    if (text.size() > kLongest) out += "...";
-    return out;
+std::size_t bytes_sent(const Request& request, const Response& response) {
+    return request.method == "HEAD" ? 0 : response.body.size();
 }
 
 }  // namespace tinsmith::server

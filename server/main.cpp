@@ -16,6 +16,7 @@ struct Run {
     int operator()(const ServeConfig& config) const { return run_serve(config); }
     int operator()(const IntegrateConfig& config) const { return run_integrate(config); }
     int operator()(const CheckConfig& config) const { return run_check(config); }
+    int operator()(const BackupConfig& config) const { return run_backup(config); }
 };
 
 }  // namespace

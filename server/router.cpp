@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "server/log.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/reply.hpp"
+#include "server/session_vault.hpp"
 #include "server/target.hpp"
 
 namespace tinsmith::server {
@@ -73,10 +75,11 @@ api::Faults query_faults(const Request& request, std::span<const std::string_vie
 
 }  // namespace
 
-Router::Router(std::vector<Route> routes) {
+Router::Router(std::vector<Route> routes, Metrics* metrics) {
     for (Route& route : routes) {
         auto segments = split_path(route.pattern).value_or(std::vector<std::string>{});
-        entries_.push_back({std::move(route), std::move(segments)});
+        const RouteMeter* const meter = metrics ? &metrics->route(route.pattern) : nullptr;
+        entries_.push_back({std::move(route), std::move(segments), meter});
     }
 }
 
@@ -87,8 +90,24 @@ Response answer_safely(const Request& request, const std::function<Response()>& 
         return refuse(request, api::ProblemType::OutOfMemory,
                       "The server has no memory left for this; nothing was changed. Delete "
                       "sessions that are not needed, or send less.");
+    } catch (const StorageFault& fault) {
+        return refuse(request, api::ProblemType::StorageUnavailable,
+                      "Nothing was changed: what was asked for cannot be stored. " +
+                          std::string(fault.what()) + " Ask again in a moment.")
+            .with("Retry-After", "2");
+    } catch (const SessionIsDamaged& damaged) {
+        return refuse(request, api::ProblemType::SessionOutOfService,
+                      std::string(damaged.what()) +
+                          " Other sessions are not touched by it. DELETE this one, or restore a "
+                          "backup.");
+    } catch (const SessionIsReadOnly& read_only) {
+        return refuse(request, api::ProblemType::SessionReadOnly, read_only.what());
+    } catch (const SessionIsGone&) {
+        return refuse(request, api::ProblemType::NoSuchSession,
+                      "The session was deleted while the request ran: nothing of it is kept.");
     } catch (const std::exception& error) {
-        log_error("request " + request.id + " failed: " + error.what());
+        log_event(LogLevel::Error, "defect", "a handler failed",
+                  {{"what", error.what()}, {"request", request.id}});
         return refuse(request, api::ProblemType::Internal,
                       "A defect of the server, not of the request. Report it with the request "
                       "id; the log has the details.");
@@ -96,8 +115,10 @@ Response answer_safely(const Request& request, const std::function<Response()>& 
 }
 
 Response Router::handle(const Request& request) const {
-    Response response = answer_safely(request, [&] { return dispatch(request); });
+    const RouteMeter* route = nullptr;
+    Response response = answer_safely(request, [&] { return dispatch(request, route); });
     response.with("X-Request-Id", request.id);
+    response.route = route;  // of this request, where the answer is that of another
     return response;
 }
 
@@ -110,17 +131,19 @@ std::vector<const Router::Entry*> Router::entries_at(
     return found;
 }
 
-Response Router::dispatch(const Request& request) const {
+Response Router::dispatch(const Request& request, const RouteMeter*& route) const {
     const auto segments = split_path(request.path);
     const auto entries = segments ? entries_at(*segments) : std::vector<const Entry*>{};
     if (entries.empty()) {
         return refuse(request, api::ProblemType::NoSuchPath,
                       "Nothing is served at this path. The sessions are at /v1/sessions.");
     }
+    route = entries.front()->meter;
     const std::string wanted = request.method == "HEAD" ? "GET" : request.method;
     std::string allow = "OPTIONS";
     for (const Entry* entry : entries) {
         if (entry->route.method == wanted) {
+            route = entry->meter;
             auto faults = query_faults(request, entry->route.parameters);
             if (faults.empty()) {
                 return entry->route.handler(request, arguments_of(entry->segments, *segments));

@@ -11,6 +11,8 @@
 
 namespace tinsmith::server {
 
+class Metrics;
+
 /// What stood in the path where the pattern has "{...}", in order.
 using PathArguments = std::vector<std::string>;
 
@@ -37,7 +39,8 @@ struct Route {
 /// No regular expressions: matching is linear in the path.
 class Router {
   public:
-    explicit Router(std::vector<Route> routes);
+    /// With `metrics`, which outlives it, answers say which pattern they are counted by.
+    explicit Router(std::vector<Route> routes, Metrics* metrics = nullptr);
 
     Response handle(const Request& request) const;
 
@@ -45,9 +48,11 @@ class Router {
     struct Entry {
         Route route;
         std::vector<std::string> segments;
+        const RouteMeter* meter = nullptr;
     };
 
-    Response dispatch(const Request& request) const;
+    /// `route` becomes that of the path, if it has one.
+    Response dispatch(const Request& request, const RouteMeter*& route) const;
     std::vector<const Entry*> entries_at(const std::vector<std::string>& segments) const;
 
     std::vector<Entry> entries_;

@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <utility>
 
 #include "api/formats/read_limits.hpp"
@@ -10,18 +12,24 @@
 #include "server/kept_answers.hpp"
 #include "server/limits.hpp"
 #include "server/mesh_cache.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/page_files.hpp"
 #include "server/policy.hpp"
+#include "server/readiness.hpp"
 #include "server/session_store.hpp"
+#include "server/session_vault.hpp"
 
 namespace tinsmith::server {
 
 /// What the handlers of one process share.
 struct Services {
-    explicit Services(const Limits& the_limits, Policy the_policy = {})
+    /// No vault: sessions live in memory alone.
+    explicit Services(const Limits& the_limits, Policy the_policy = {},
+                      std::unique_ptr<SessionVault> the_vault = nullptr)
         : limits(the_limits),
           policy(std::move(the_policy)),
-          sessions(the_limits),
+          vault(std::move(the_vault)),
+          sessions(the_limits, vault.get()),
           meshes(the_limits.mesh_cache),
           answers({.bytes = the_limits.kept_answers}),
           jobs({the_limits.job_threads, the_limits.max_queued_jobs, the_limits.max_jobs,
@@ -43,12 +51,19 @@ struct Services {
 
     const Limits limits;
     const Policy policy;
-    PageFiles page;  ///< set before the first request, if at all
+    Metrics metrics;      ///< what is added to it may look at all of the below
+    Readiness readiness;  ///< likewise
+    PageFiles page;       ///< set before the first request, if at all
+    const std::unique_ptr<SessionVault> vault;  ///< null: none; outlives what is stored in it
     SessionStore sessions;
     MeshCache meshes;                   ///< encoded
     KeptAnswers answers;                ///< for retries by key
     std::atomic<bool> stopping{false};  ///< edits under way give up when it turns true
-    Jobs jobs;                          ///< last: their work uses all of the above
+    /// Called once when the server stops, on one thread: no request is under way any more, nor a
+    /// job. Sessions are snapshotted here, as many as there is time for until then; what comes
+    /// later ends with the process.
+    std::function<void(std::chrono::steady_clock::time_point until)> before_exit;
+    Jobs jobs;  ///< last: their work uses all of the above
 };
 
 }  // namespace tinsmith::server

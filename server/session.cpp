@@ -159,6 +159,7 @@ void Session::refresh_view() noexcept {
 core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kind,
                                           std::vector<std::string> polygons,
                                           const RunLimits& limits) {
+    require_whole();
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
     const std::uint64_t made = version() + 1;
     Edit step;
@@ -186,7 +187,8 @@ core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kin
     step.added_bytes = (*applied)->lasting_bytes;
     done[0] = *applied;
     try {
-        digest_ = log_change(PerformAsked{kind, (*applied)->operation, change.polygons}, {}, done, watch);
+        digest_ =
+            log_change(PerformAsked{kind, (*applied)->operation, change.polygons}, {}, done, watch);
     } catch (...) {
         is_lost_ = !taken_back((*applied)->undo);
         throw;

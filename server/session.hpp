@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -26,6 +25,7 @@
 #include "server/history.hpp"
 #include "server/locks.hpp"
 #include "server/polygon.hpp"
+#include "server/stopwatch.hpp"
 
 namespace tinsmith::server {
 
@@ -71,17 +71,6 @@ struct SessionImage {
 
 using VersionOutcome = std::variant<core::Tin, VersionGone, VersionAhead, core::Errors>;
 using StateOutcome = std::variant<SessionState, VersionGone, VersionAhead, core::Errors>;
-
-/// What runs from when it is made.
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 /// What listings tell of a session.
 api::SessionView view_of(const SessionFacts& facts, const SessionCounts& counts);
@@ -195,6 +184,9 @@ class Session {
     std::string log_change(const ChangeAsked& asked, std::span<const AppliedPtr> taken,
                            std::span<const AppliedPtr> done, const Stopwatch& watch) const;
     SessionCounts counts_now(std::uint64_t version) const;
+    void require_whole() const {
+        if (is_lost_) throw StorageFault("The session has to be loaded again.");
+    }
     bool taken_back(const core::Undo& undo) noexcept;
     /// What `replace` does to the newest operations, and how that is kept.
     struct Replacement;

@@ -127,6 +127,7 @@ bool Session::brought_back(std::span<const AppliedPtr> taken,
 /// Requires: the writer's lock.
 ChangeOutcome Session::replace(const ChangeRequest& request, const ChangeAsked& asked,
                                Replacement replacement) {
+    require_whole();
     const std::uint64_t before = version();
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
     history_.prepare(replacement.wanted.size());

@@ -18,8 +18,7 @@ void Session::start_log(std::shared_ptr<ChangeLog> log) {
 }
 
 std::string Session::log_change(const ChangeAsked& asked, std::span<const AppliedPtr> taken,
-                                std::span<const AppliedPtr> done,
-                                const Stopwatch& watch) const {
+                                std::span<const AppliedPtr> done, const Stopwatch& watch) const {
     if (digest_.empty()) return {};
     const std::uint64_t made = version() + 1;
     std::string digest = next_digest(digest_, made, tin_, taken, done);

@@ -30,14 +30,13 @@ std::vector<std::string> SessionStore::take_up() {
 
 std::shared_ptr<Session> SessionStore::load(Entry& entry) {
     const std::lock_guard one(entry.loading);
-    std::optional<BorrowedMemory> room;
     {
         const std::shared_lock lock(mutex_);
         if (entry.session && !entry.session->is_lost()) return entry.session;
         if (!entry.damage.empty()) throw SessionIsDamaged(entry.damage);
     }
     // Its bytes, and what is made of them.
-    room = borrow(2 * entry.counts.memory_bytes);
+    const auto room = borrow(2 * entry.counts.memory_bytes);
     if (!room) throw std::bad_alloc();
     LoadedSession loaded;
     try {

@@ -7,7 +7,6 @@
 #include "core/algorithm.hpp"
 #include "server/archive/session_archive.hpp"
 #include "server/mesh_digest.hpp"
-#include "server/request_key.hpp"
 
 namespace tinsmith::server {
 
@@ -36,6 +35,17 @@ std::int64_t unix_seconds() {
 
 void require(const Committed& committed) {
     if (committed) throw_fault(*committed);
+}
+
+/// Scope and key as one text: neither has a line's end.
+std::string stored_key(const RequestKey& key) {
+    return key.key.empty() ? std::string() : key.scope + '\n' + key.key;
+}
+RequestKey key_of(std::string_view stored, std::string print) {
+    const std::size_t end = stored.find('\n');
+    if (end == std::string_view::npos) return {};
+    return {std::string(stored.substr(end + 1)), std::move(print),
+            std::string(stored.substr(0, end))};
 }
 
 /// Takes no changes.
@@ -67,9 +77,9 @@ class SessionVault::Log : public ChangeLog {
 
     void keep(const LoggedChange& change) override {
         const RequestKey& key = current_request_key();
-        JournalEntry entry{change.birth,  change.counts.version, core::kAlgorithm,
-                           pack(change.asked), change.digest,    key.key,
-                           key.print,      pack(change.counts)};
+        JournalEntry entry{change.birth,       change.counts.version, core::kAlgorithm,
+                           pack(change.asked), change.digest,         key.key,
+                           key.print,          pack(change.counts)};
         const std::size_t bytes = entry.body.size() + entry.view.size();
         require(vault_.journal_->append(std::move(entry)));
         add(bytes, change.seconds);
@@ -130,8 +140,7 @@ std::vector<VaultEntry> SessionVault::entries() const {
     for (SessionRow& row : std::get<0>(rows)) {
         VaultEntry entry;
         entry.used = row.session.used;
-        entry.key = std::move(row.session.key);
-        entry.print = std::move(row.session.print);
+        entry.made_by = key_of(row.session.key, std::move(row.session.print));
         entry.damage = std::move(row.damage);
         auto facts = unpack_facts(row.session.facts);
         auto counts = unpack_counts(row.view);
@@ -156,9 +165,9 @@ void SessionVault::create(Session& session) {
     session.start_log(log);
     const SessionImage image = session.image();
     const RequestKey& key = current_request_key();
-    require(journal_->create({facts.birth, facts.id, pack(facts), key.key, key.print,
-                              unix_seconds()},
-                             head_of(image, session.counts()), pack(image)));
+    require(journal_->create(
+        {facts.birth, facts.id, pack(facts), stored_key(key), key.print, unix_seconds()},
+        head_of(image, session.counts()), pack(image)));
 }
 
 LoadedSession SessionVault::load(const std::string& birth) {
@@ -178,18 +187,16 @@ LoadedSession SessionVault::load(const std::string& birth) {
     if (stored.head.algorithm != core::kAlgorithm) image->history.settle();
     LoadedSession loaded;
     loaded.session = std::make_shared<Session>(std::move(*image));
-    const auto other = std::ranges::find_if(stored.tail, [](const JournalEntry& entry) {
-        return entry.algorithm != core::kAlgorithm;
-    });
+    const auto other = std::ranges::find_if(
+        stored.tail, [](const JournalEntry& entry) { return entry.algorithm != core::kAlgorithm; });
     if (other != stored.tail.end()) {
-        loaded.read_only = "This session is read-only: it is as version " +
-                           std::to_string(stored.head.version) + " was. Later changes, up to " +
-                           std::to_string(stored.tail.back().version) +
-                           ", were made by algorithm " + std::to_string(other->algorithm) +
-                           " of the core, and this program has algorithm " +
-                           std::to_string(core::kAlgorithm) +
-                           ". Start the release that made them, stop it in order, and it leaves a "
-                           "snapshot that this one can go on from.";
+        loaded.read_only =
+            "This session is read-only: it is as version " + std::to_string(stored.head.version) +
+            " was. Later changes, up to " + std::to_string(stored.tail.back().version) +
+            ", were made by algorithm " + std::to_string(other->algorithm) +
+            " of the core, and this program has algorithm " + std::to_string(core::kAlgorithm) +
+            ". Start the release that made them, stop it in order, and it leaves a "
+            "snapshot that this one can go on from.";
         loaded.session->add_note(loaded.read_only);
         loaded.session->start_log(std::make_shared<ReadOnlyLog>(loaded.read_only));
         return loaded;

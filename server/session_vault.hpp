@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "server/change_log.hpp"
+#include "server/request_key.hpp"
 #include "server/session.hpp"
 #include "server/store/journal.hpp"
 
@@ -29,9 +30,8 @@ struct VaultEntry {
     SessionFacts facts;
     SessionCounts counts;
     std::int64_t used = 0;  ///< Unix seconds
-    std::string key;        ///< the Idempotency-Key that it was made with; empty: none
-    std::string print;
-    std::string damage;  ///< not empty: out of service, and why; then the rest may be too
+    RequestKey made_by;     ///< of the request that made it
+    std::string damage;     ///< not empty: out of service, and why; then the rest may be too
 };
 
 /// A change that came with an Idempotency-Key and is not in a snapshot yet.

@@ -10,5 +10,6 @@ namespace tinsmith::server {
 int run_serve(const ServeConfig& config);
 int run_integrate(const IntegrateConfig& config);
 int run_check(const CheckConfig& config);
+int run_backup(const BackupConfig& config);
 
 }  // namespace tinsmith::server

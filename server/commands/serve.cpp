@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <csignal>
+#include <exception>
 #include <future>
 #include <string>
 
@@ -7,119 +9,245 @@
 
 #include "server/answer_finish.hpp"
 #include "server/commands/commands.hpp"
+#include "server/commands/stopping.hpp"
 #include "server/demo.hpp"
 #include "server/file_io.hpp"
 #include "server/http_server.hpp"
 #include "server/log.hpp"
 #include "server/router.hpp"
 #include "server/routes/page_routes.hpp"
+#include "server/routes/restored_answers.hpp"
 #include "server/routes/route_table.hpp"
 #include "server/services.hpp"
+#include "server/session_keeper.hpp"
+#include "server/work.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
-/// How long requests may go on after a signal before edits are told to give up.
-constexpr std::chrono::seconds kGrace{5};
+using Clock = std::chrono::steady_clock;
 
-/// SIGINT and SIGTERM, taken off every thread so that only `wait` meets them: no code of ours runs
-/// in a signal handler.
-class StopSignals {
-  public:
-    StopSignals() {
-        sigemptyset(&set_);
-        sigaddset(&set_, SIGINT);
-        sigaddset(&set_, SIGTERM);
-        pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-    }
-
-    void wait() const {
-        int signal = 0;
-        sigwait(&set_, &signal);
-    }
-
-    /// From now on they end the process at once: for those who press Ctrl-C twice.
-    void release() const { pthread_sigmask(SIG_UNBLOCK, &set_, nullptr); }
-
-  private:
-    sigset_t set_{};
-};
+Clock::duration seconds_of(double seconds) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
 
 bool is_loopback(const std::string& host) {
     return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
+std::string url_of(const std::string& host, int port) {
+    const bool v6 = host.find(':') != std::string::npos;
+    return "http://" + (v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) + "/";
+}
+
 int fail(const std::string& reason) {
-    log_error(reason);
+    log_event(LogLevel::Error, "failed", reason);
     return kExitRefused;
 }
 
-/// Serves until a signal comes. False: the listening socket failed by itself.
-bool serve_until_stopped(HttpServer& server, Services& services, const StopSignals& signals) {
+void wake_main() {
+    ::kill(::getpid(), SIGTERM);
+}
+
+/// The sessions that were stored. Those that cannot be read are told of, and stop nothing.
+std::string load_stored(Services& services) {
+    try {
+        for (const std::string& damaged : services.sessions.take_up())
+            log_event(LogLevel::Error, "session_damaged", damaged);
+        restore_answers(services);
+        services.sessions.load_all([] { return !told_to_stop(); });
+    } catch (const StorageFault& fault) {
+        return fault.what();
+    }
+    const SessionTotals totals = services.sessions.totals();
+    log_event(LogLevel::Info, "loaded",
+              std::to_string(totals.in_memory) + " of " + std::to_string(totals.sessions) +
+                  " stored sessions are in memory, " + std::to_string(totals.out_of_service) +
+                  " out of service",
+              {{"sessions", std::to_string(totals.sessions)},
+               {"in_memory", std::to_string(totals.in_memory)},
+               {"out_of_service", std::to_string(totals.out_of_service)}});
+    return {};
+}
+
+/// The sessions that are there from the beginning. Empty, or what is wrong.
+std::string load_sessions(Services& services, const ServeConfig& config) {
+    if (services.vault) {
+        const std::string error = load_stored(services);
+        if (!error.empty()) return "--data: " + error;
+    }
+    if (!config.demo || services.sessions.contains("demo")) return {};
+    const std::string path = config.demo_terrain.empty() ? bundled_terrain() : config.demo_terrain;
+    const std::string error = load_demo(services, path);
+    return error.empty() ? error : "--demo: " + error;
+}
+
+/// Loads on a thread of its own, while the server answers already that it is not ready.
+class Startup {
+  public:
+    Startup(Services& services, const ServeConfig& config, int port)
+        : services_(services),
+          config_(config),
+          port_(port),
+          error_(std::async(std::launch::async, [this] { return run_or_wake(); })) {}
+
+    /// Loading gives up when it next tells of its progress.
+    void stop() { work_.stop(); }
+
+    /// Whether it failed, and was not told to stop.
+    bool has_failed() const { return failed_; }
+
+    /// Waits for the end. Empty: it has not failed.
+    std::string error() {
+        std::string error = error_.get();
+        return failed_ ? error : std::string();
+    }
+
+  private:
+    std::string run_or_wake() {
+        try {
+            std::string error = run();
+            if (!error.empty()) give_up();
+            return error;
+        } catch (...) {
+            give_up();
+            throw;
+        }
+    }
+
+    void give_up() {
+        failed_ = !work_.stopped();
+        wake_main();
+    }
+
+    std::string run() {
+        const WorkScope scope(work_);
+        std::string error = load_sessions(services_, config_);
+        if (!error.empty()) return error;
+        if (!config_.port_file.empty()) {
+            error = write_file_atomically(config_.port_file, std::to_string(port_) + "\n");
+            if (!error.empty()) return "--port-file: " + error;
+        }
+        services_.readiness.enter(Readiness::Phase::Serving);
+        const std::string url = url_of(config_.http.host, port_);
+        log_event(LogLevel::Info, "started", "serving on " + url, {{"url", url}});
+        return {};
+    }
+
+    Services& services_;
+    const ServeConfig& config_;
+    const int port_;
+    Work work_;
+    std::atomic<bool> failed_{false};
+    std::future<std::string> error_;  ///< last: its thread uses the above
+};
+
+/// Serves until a signal comes or the start fails, then drains. An exit code.
+int serve_until_stopped(HttpServer& server, Services& services, const ServeConfig& config, int port,
+                        const StopSignals& signals) {
     auto served = std::async(std::launch::async, [&server] {
         const bool fine = server.serve();
-        if (!fine) ::kill(::getpid(), SIGTERM);  // wakes the wait below
+        if (!fine) wake_main();
         return fine;
     });
+    const std::string url = url_of(config.http.host, port);
+    log_event(LogLevel::Info, "listening", "listening on " + url + ", not ready yet",
+              {{"url", url}});
+    Startup startup(services, config, port);
     signals.wait();
     signals.release();
-    log_info("stopping: requests under way are answered first");
+    const bool has_failed = startup.has_failed();
+    const auto delay = has_failed ? Clock::duration(0) : seconds_of(config.drain_delay);
+    const auto grace = has_failed ? Clock::duration(0) : seconds_of(config.grace);
+    const Clock::time_point end = Clock::now() + delay + grace + kLastWait;
+    const Watchdog watchdog(end);
+    services.readiness.enter(Readiness::Phase::Draining);
+    startup.stop();
+    server.drain();
+    log_event(LogLevel::Info, "draining", "told to stop: no longer ready");
+    served.wait_for(delay);  // or until the socket fails
+    log_event(LogLevel::Info, "stopping", "requests under way are answered first");
     server.stop();
     // A job may wait for a session that a request has locked: it ends after that one, so jobs are
     // told now but waited for last.
     services.jobs.stop();
-    served.wait_for(kGrace);
+    served.wait_for(grace);
     services.stopping = true;
     services.jobs.shut_down();
-    return served.get();
+    const bool fine = served.get();
+    const std::string error = startup.error();
+    if (services.before_exit) services.before_exit(end - std::chrono::milliseconds(500));
+    if (!error.empty()) return fail(error);
+    if (!fine) return fail("the listening socket failed");
+    log_event(LogLevel::Info, "stopped", "stopped");
+    return kExitOk;
+}
+
+/// No vault where none is asked for; or why there is none.
+std::variant<std::unique_ptr<SessionVault>, std::string> open_vault(const ServeConfig& config) {
+    if (config.data.empty()) return std::unique_ptr<SessionVault>();
+    JournalOptions options;
+    options.folder = config.data;
+    const Limits& limits = config.http.limits;
+    return SessionVault::open(options, {limits.max_history, limits.max_history_bytes});
 }
 
 }  // namespace
 
 int run_serve(const ServeConfig& config) {
     const StopSignals signals;  // before the first thread, which inherits the mask
+    set_log_format(config.log_format);
     set_log_level(config.log_level);
-    Services services(config.http.limits, config.policy);
-    const Router router(make_routes(services));
-    const Router page_router(make_page_routes(services));
+    auto vault = open_vault(config);
+    if (const auto* why = std::get_if<std::string>(&vault)) return fail("--data: " + *why);
+    Services services(config.http.limits, config.policy, std::get<0>(std::move(vault)));
+    services.readiness.begin();
+    SessionKeeper keeper(services);
+    if (services.vault) {
+        store_answers(services);
+        services.before_exit = [&](Clock::time_point until) { keeper.snapshot_all(until); };
+        services.readiness.add("journal", [&services]() -> std::optional<std::string> {
+            const JournalHealth health = services.vault->journal().health();
+            if (health.fine) return std::nullopt;
+            return health.why;
+        });
+    } else {
+        log_event(LogLevel::Warning, "not_durable",
+                  "sessions live in memory alone and end with this process; --data stores them");
+    }
+    const Router router(make_routes(services), &services.metrics);
+    const Router page_router(make_page_routes(services), &services.metrics);
     HttpServer server(
         config.http,
-        [&router, &page_router](const Request& request) {
+        [&](const Request& request) {
+            const Metrics::InFlight one(services.metrics);
             return request.path.starts_with(kPageFolder) ? page_router.handle(request)
                                                          : router.handle(request);
         },
         [&services](const Request& request, Response& response) {
             finish_answer(services.policy, request, response);
+        },
+        [&services](const Request& request, const Response& response, double seconds) {
+            services.metrics.request(response.route, request.method, response.status, seconds,
+                                     request.body.size(), bytes_sent(request, response));
+            log_request(request, response, seconds * 1e3);
         });
     std::string error;
     const int port = server.bind(error);
     if (port == 0) return fail(error);
     if (!is_loopback(config.http.host)) {
-        log_warning("LISTENING BEYOND THIS MACHINE (" + config.http.host +
-                    ") WITHOUT KEYS: everyone who reaches the port can read, change and delete "
-                    "every session. Put a proxy with access control in front.");
+        log_event(LogLevel::Warning, "exposed",
+                  "LISTENING BEYOND THIS MACHINE (" + config.http.host +
+                      ") WITHOUT KEYS: everyone who reaches the port can read, change and delete "
+                      "every session. Put a proxy with access control in front.");
     }
     const std::string viewer = config.viewer.empty() ? bundled_page() : config.viewer;
     if (!viewer.empty()) {
         services.page = PageFiles::read(viewer, error);
         if (!services.page.is_there()) return fail("--viewer: " + error);
     }
-    if (config.demo) {
-        const std::string path =
-            config.demo_terrain.empty() ? bundled_terrain() : config.demo_terrain;
-        if (error = load_demo(services, path); !error.empty()) return fail("--demo: " + error);
-    }
-    if (!config.port_file.empty()) {
-        error = write_file_atomically(config.port_file, std::to_string(port) + "\n");
-        if (!error.empty()) return fail("--port-file: " + error);
-    }
-    const bool v6 = config.http.host.find(':') != std::string::npos;
-    const std::string host = v6 ? "[" + config.http.host + "]" : config.http.host;
-    log_info("serving on http://" + host + ":" + std::to_string(port) + "/");
-    if (!serve_until_stopped(server, services, signals)) return fail("the listening socket failed");
-    log_info("stopped");
-    return kExitOk;
+    return serve_until_stopped(server, services, config, port, signals);
 }
 
 }  // namespace tinsmith::server

@@ -53,6 +53,7 @@ Response get_delta(Services& services, const Request& request, const PathArgumen
     }
     const auto& delta = std::get<api::MeshDelta>(copy);
     const bool as_json = std::get<0>(type) == 0;
+    const EncodeMeter meter(services.metrics, EncodeFormat::Delta);
     const std::string suffix =
         "-since" + std::to_string(std::get<0>(since)) + (as_json ? "-json" : "-delta");
     return ok(std::string(kDeltaTypes[std::get<0>(type)]),

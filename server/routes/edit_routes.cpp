@@ -70,14 +70,15 @@ Step<Wishes> require_wishes(Services& services, const Request& request, const Se
     return wishes;
 }
 
-Response send_edit(const Request& request, const Session& session, const EditResult& result,
-                   const Wishes& wishes) {
+Response send_edit(Metrics& metrics, const Request& request, const Session& session,
+                   const EditResult& result, const Wishes& wishes) {
     Response response =
-        wishes.wants_mesh()     ? mesh_after(request, session, result.version, result.mesh,
-                                             wishes.dry_run, wishes.type, wishes.gltf)
-        : wishes.type == kDelta ? delta_response(request, session, result.version, result.delta)
-                                : ok(kJson, api::write_edit(session.facts().id, result.version,
-                                                            wishes.dry_run, *result.answer));
+        wishes.wants_mesh() ? mesh_after(metrics, request, session, result.version, result.mesh,
+                                         wishes.dry_run, wishes.type, wishes.gltf)
+        : wishes.type == kDelta
+            ? delta_response(metrics, request, session, result.version, result.delta)
+            : ok(kJson, api::write_edit(session.facts().id, result.version, wishes.dry_run,
+                                        *result.answer));
     if (!wishes.dry_run) response.with("Link", history_link(session, result.version));
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");
 }
@@ -114,6 +115,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     edit.want_mesh = as_mesh;
     edit.want_delta = wishes.type == kDelta;
     edit.expected_version = wishes.expected_version;
+    const Stopwatch watch;
     const auto outcome = session.edit(std::move(edit));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome))
         return version_mismatch(request, session, mismatch->current);
@@ -121,12 +123,14 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
         return refuse_edit(request, asked->polygon, *fault);
     if (const auto* errors = std::get_if<core::Errors>(&outcome))
         return refuse_edit(request, asked->polygon, *errors);
+    const auto& result = std::get<EditResult>(outcome);
+    services.metrics.edited(result.answer->report, watch.seconds(), wishes.dry_run);
     if (!wishes.dry_run && !services.sessions.is_kept(session)) {
         return refuse(request, api::ProblemType::NoSuchSession,
                       "The session was deleted while the edit ran: nothing of it is kept.");
     }
     begin_stage(1.0);
-    return send_edit(request, session, std::get<EditResult>(outcome), wishes);
+    return send_edit(services.metrics, request, session, result, wishes);
 }
 
 }  // namespace tinsmith::server

@@ -17,7 +17,12 @@ Response get_page(Services&, const Request&, const PathArguments&);
 
 // service_routes.cpp
 Response get_health(Services&, const Request&, const PathArguments&);  ///< takes no lock
+Response get_ready(Services&, const Request&, const PathArguments&);   ///< waits for nobody
+Response get_metrics(Services&, const Request&, const PathArguments&);
 Response get_limits(Services&, const Request&, const PathArguments&);
+
+/// Until the sessions have been loaded whoever asks for them is told to come again.
+Handler once_started(Services& services, Handler handler);
 
 // description_routes.cpp: the interface described, for programs and for people
 Response get_description(Services&, const Request&, const PathArguments&);

@@ -82,8 +82,14 @@ Response refuse_polygon(const Request& request, const Session& session,
     return no_such_polygon(request, session, id);
 }
 
+/// What a change was and how long it took.
+struct Timed {
+    EditSort sort;
+    double seconds;
+};
+
 Response send_change(const Request& request, Services& services, const Asked& asked,
-                     const ChangeOutcome& outcome, api::ProblemType nothing) {
+                     const ChangeOutcome& outcome, api::ProblemType nothing, Timed timed) {
     const Session& session = *asked.session;
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, session, mismatch->current);
@@ -96,12 +102,15 @@ Response send_change(const Request& request, Services& services, const Asked& as
     if (const auto* failure = std::get_if<ReplayFailure>(&outcome)) {
         return refuse_replay(request, *failure);
     }
-    if (!services.sessions.is_kept(session)) return no_such_session(request, session.facts().id);
+    services.metrics.edited(timed.sort, timed.seconds);
+    if (!services.sessions.is_kept(session))
+        return no_such_session(services, request, session.facts().id);
     const auto& result = std::get<ChangeResult>(outcome);
     const std::uint64_t version = result.change.view.version;
-    Response response = asked.change.want_delta
-                            ? delta_response(request, session, version, result.delta)
-                            : ok(kJson, api::write_change(session.facts().id, result.change.view));
+    Response response =
+        asked.change.want_delta
+            ? delta_response(services.metrics, request, session, version, result.delta)
+            : ok(kJson, api::write_change(session.facts().id, result.change.view));
     return response.with("ETag", session.etag(version))
         .with("Link", history_link(session, version))
         .with("Vary", "Accept");
@@ -127,16 +136,20 @@ Response undo_edit(Services& services, const Request& request, const PathArgumen
     const auto asked = require_change(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
     const Asked& what = std::get<0>(asked);
-    return send_change(request, services, what, what.session->undo(what.change),
-                       api::ProblemType::NothingToUndo);
+    const Stopwatch watch;
+    const auto outcome = what.session->undo(what.change);
+    return send_change(request, services, what, outcome, api::ProblemType::NothingToUndo,
+                       {EditSort::Undo, watch.seconds()});
 }
 
 Response redo_edit(Services& services, const Request& request, const PathArguments& arguments) {
     const auto asked = require_change(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&asked)) return *refusal;
     const Asked& what = std::get<0>(asked);
-    return send_change(request, services, what, what.session->redo(what.change),
-                       api::ProblemType::NothingToRedo);
+    const Stopwatch watch;
+    const auto outcome = what.session->redo(what.change);
+    return send_change(request, services, what, outcome, api::ProblemType::NothingToRedo,
+                       {EditSort::Redo, watch.seconds()});
 }
 
 Response delete_polygon(Services& services, const Request& request,
@@ -146,13 +159,15 @@ Response delete_polygon(Services& services, const Request& request,
     const auto cascade = require_flag(request, "cascade");
     if (const auto* refusal = std::get_if<Response>(&cascade)) return *refusal;
     const Asked& what = std::get<0>(asked);
+    const Stopwatch watch;
     const auto outcome =
         what.session->remove_polygon(arguments[1], std::get<0>(cascade), what.change);
     const bool is_about_polygon = std::holds_alternative<NoSuchPolygon>(outcome) ||
                                   std::holds_alternative<PolygonSettled>(outcome) ||
                                   std::holds_alternative<PolygonInUse>(outcome);
     if (is_about_polygon) return refuse_polygon(request, *what.session, outcome, arguments[1]);
-    return send_change(request, services, what, outcome, api::ProblemType::NothingToUndo);
+    return send_change(request, services, what, outcome, api::ProblemType::NothingToUndo,
+                       {EditSort::Removal, watch.seconds()});
 }
 
 Response get_history(Services& services, const Request& request, const PathArguments& arguments) {
@@ -185,6 +200,14 @@ Response get_change(Services& services, const Request& request, const PathArgume
         return version_ahead(request, *ahead);
     }
     return ok(kJson, text_of(session, std::get<ChangeCopy>(copy)));
+}
+
+Response tell_change(const Session& session, const ChangeCopy& change) {
+    const std::uint64_t version = change.view.version;
+    return ok(kJson, text_of(session, change))
+        .with("Link", history_link(session, version))
+        .with("ETag", session.etag(version))
+        .with("Vary", "Accept");
 }
 
 }  // namespace tinsmith::server

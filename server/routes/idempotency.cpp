@@ -10,6 +10,7 @@
 #include "server/digest.hpp"
 #include "server/entity_tag.hpp"
 #include "server/reply.hpp"
+#include "server/request_key.hpp"
 
 namespace tinsmith::server {
 
@@ -121,9 +122,12 @@ Handler keyed(Services& services, Handler handler) {
         if (!arguments.empty() && !session) return handler(request, arguments);
         const KeptAnswers::Name name{session ? session->facts().birth : std::string(),
                                      std::move(*key)};
-        auto verdict = services.answers.begin(name, print_of(request));
+        std::string print = print_of(request);
+        auto verdict = services.answers.begin(name, print);
+        if (std::holds_alternative<Response>(verdict)) services.metrics.answer_replayed();
         if (auto refusal = std::visit(Refusals{request}, verdict)) return *std::move(refusal);
         const Claim claim(services.answers, name);
+        const RequestKeyScope scope({name.second, std::move(print), name.first});
         Response response = handler(request, arguments);
         if (is_worth_keeping(response.status)) {
             const std::uint64_t number = services.answers.keep(name, response);

@@ -150,7 +150,7 @@ Options read_options(const Services& services, const api::FormPart* part, FormFa
     return options;
 }
 
-Response send(const Services& services, const Request& request, const Session& session,
+Response send(Services& services, const Request& request, const Session& session,
               const PolygonResult& result, std::size_t type, bool dry_run,
               api::MeshOptions options) {
     if (type == 0) {
@@ -182,7 +182,7 @@ Response send(const Services& services, const Request& request, const Session& s
     const auto& source = std::get<MeshSource>(found);
     options.gltf.unit_to_metre = api::metres_per(session.facts().unit);
     options.gltf.crs = session.facts().crs;
-    return gltf_response(request, source.mesh, options.gltf,
+    return gltf_response(services.metrics, request, source.mesh, options.gltf,
                          {kAnswerTypes[type], source.regions ? &*source.regions : nullptr});
 }
 
@@ -217,15 +217,17 @@ Response integrate(Services& services, const Request& request, LoadedTerrain ter
                      std::move(terrain.about.repairs),
                      std::move(terrain.about.notes)},
                     std::move(terrain.tin));
+    const Stopwatch watch;
     const auto outcome = session.integrate(std::move(work.edit));
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
         FormFaults faults;
         faults.add(api::FaultKind::Invalid, kPolygons, faults_of(*errors, work.shapes));
         return refuse(request, api::problem_of_errors(*errors, std::move(faults.faults)));
     }
+    const auto& result = std::get<PolygonResult>(outcome);
+    services.metrics.edited(*result.report, watch.seconds(), dry_run);
     begin_stage(1.0);
-    return send(services, request, session, std::get<PolygonResult>(outcome), type, dry_run,
-                options);
+    return send(services, request, session, result, type, dry_run, options);
 }
 
 }  // namespace

@@ -118,6 +118,7 @@ Response set_locks(Services& services, const Request& request, const std::string
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     RunLimits limits = rerun_limits(services.limits, services.stopping);
     limits.max_crossings = services.limits.max_crossings;
+    const Stopwatch watch;
     const auto outcome = session->set_locks(std::move(edit), std::move(limits));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, *session, mismatch->current);
@@ -125,10 +126,12 @@ Response set_locks(Services& services, const Request& request, const std::string
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
         return refuse(request, api::problem_of_errors(*errors, faults_of(*errors, shapes)));
     }
-    if (!dry_run && !services.sessions.is_kept(*session)) return no_such_session(request, id);
+    services.metrics.edited(EditSort::Locks, watch.seconds(), dry_run);
+    if (!dry_run && !services.sessions.is_kept(*session))
+        return no_such_session(services, request, id);
     const auto& result = std::get<LocksResult>(outcome);
     Response response =
-        as_delta ? delta_response(request, *session, result.version, result.delta)
+        as_delta ? delta_response(services.metrics, request, *session, result.version, result.delta)
                  : ok(kJson,
                       api::write_locks({id, result.version, dry_run, locked, result.done->paths}));
     if (!dry_run) response.with("Link", history_link(*session, result.version));

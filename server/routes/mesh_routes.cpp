@@ -181,13 +181,16 @@ Response send(Services& services, const Session& session, const Request& request
     return tell(session, *found, suffix);
 }
 
-Response write_as(const Request& request, const SessionFacts& facts, const MeshSource& source,
-                  MeshFormat format, const api::MeshOptions& options) {
+Response write_as(Metrics& metrics, const Request& request, const SessionFacts& facts,
+                  const MeshSource& source, MeshFormat format, const api::MeshOptions& options) {
     if (is_gltf(format)) {
-        return gltf_response(request, source.mesh, options.gltf,
+        return gltf_response(metrics, request, source.mesh, options.gltf,
                              {kMeshTypes[static_cast<std::size_t>(format)],
                               source.regions ? &*source.regions : nullptr});
     }
+    const EncodeMeter meter(metrics, format == MeshFormat::Json  ? EncodeFormat::Json
+                                     : format == MeshFormat::Obj ? EncodeFormat::Obj
+                                                                 : EncodeFormat::LandXml);
     Response response;
     if (format == MeshFormat::Json) {
         response = ok(kJson, api::write_mesh_json(source.mesh));
@@ -253,8 +256,8 @@ Response send_mesh(Services& services, const Request& request, const std::string
                                              deadline(services.limits, services.stopping)});
                     if (auto* no = std::get_if<NoSource>(&source))
                         return refuse_source(request, std::move(*no));
-                    return write_as(request, session.facts(), std::get<MeshSource>(source), format,
-                                    options);
+                    return write_as(services.metrics, request, session.facts(),
+                                    std::get<MeshSource>(source), format, options);
                 });
 }
 

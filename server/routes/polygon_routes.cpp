@@ -100,6 +100,7 @@ Response integrate_polygons(Services& services, const Request& request,
     if (!dry_run) {
         if (auto refusal = refusal_of_blind_edit(services, request, session)) return *refusal;
     }
+    const Stopwatch watch;
     auto outcome = session.integrate(std::move(work->edit));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {
         return version_mismatch(request, session, mismatch->current);
@@ -107,15 +108,17 @@ Response integrate_polygons(Services& services, const Request& request,
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
         return refuse(request, api::problem_of_errors(*errors, faults_of(*errors, work->shapes)));
     }
+    const auto& result = std::get<PolygonResult>(outcome);
+    services.metrics.edited(*result.report, watch.seconds(), dry_run);
     if (!dry_run && !services.sessions.is_kept(session)) {
         return refuse(request, api::ProblemType::NoSuchSession,
                       "The session was deleted while the edit ran: nothing of it is kept.");
     }
     begin_stage(1.0);
-    const auto& result = std::get<PolygonResult>(outcome);
-    Response response = as_mesh ? mesh_after(request, session, result.version, result.mesh, dry_run,
-                                             answer_type, std::get<0>(gltf))
-                        : as_delta ? delta_response(request, session, result.version, result.delta)
+    Response response = as_mesh    ? mesh_after(services.metrics, request, session, result.version,
+                                                result.mesh, dry_run, answer_type, std::get<0>(gltf))
+                        : as_delta ? delta_response(services.metrics, request, session,
+                                                    result.version, result.delta)
                                    : send_report(session, result, dry_run);
     if (!dry_run) response.with("Link", history_link(session, result.version));
     return response.with("ETag", session.etag(result.version)).with("Vary", "Accept");

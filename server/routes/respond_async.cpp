@@ -9,6 +9,7 @@
 #include "api/jobs.hpp"
 #include "server/entity_tag.hpp"
 #include "server/reply.hpp"
+#include "server/request_key.hpp"
 
 namespace tinsmith::server {
 
@@ -31,8 +32,7 @@ bool prefers_a_job(const Request& request) {
 
 /// Whether the session that a job was asked of gave way to another of its id. One that is just gone
 /// is the handler's to tell.
-bool is_another(const Services& services, const PathArguments& arguments,
-                const std::string& birth) {
+bool is_another(Services& services, const PathArguments& arguments, const std::string& birth) {
     if (birth.empty()) return false;
     const auto session = services.sessions.find(arguments[0]);
     return session && session->facts().birth != birth;
@@ -63,8 +63,10 @@ Handler deferrable(Services& services, Handler handler, Names names) {
         }
         const std::string birth = session ? session->facts().birth : std::string();
         session.reset();  // a job that waits keeps none alive
-        const auto job = services.jobs.add(
-            request, [&services, handler, arguments, birth](const Request& asked) {
+        const auto job =
+            services.jobs.add(request, [&services, handler, arguments, birth,
+                                        key = current_request_key()](const Request& asked) {
+                const RequestKeyScope scope(key);
                 return answer_safely(asked, [&] {
                     return is_another(services, arguments, birth)
                                ? refuse_successor(asked, arguments[0])

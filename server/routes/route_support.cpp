@@ -43,13 +43,14 @@ std::string text_of(double value) {
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id) {
     if (auto session = services.sessions.find(id)) return session;
-    return no_such_session(request, id);
+    return no_such_session(services, request, id);
 }
 
-Response no_such_session(const Request& request, const std::string& id) {
+Response no_such_session(const Services& services, const Request& request, const std::string& id) {
     return refuse(request, api::ProblemType::NoSuchSession,
                   "No session has the id \"" + id.substr(0, 64) +
-                      "\". GET /v1/sessions lists them; they are gone when the server stops.");
+                      "\". GET /v1/sessions lists them" +
+                      (services.vault ? "." : "; they are gone when the server stops."));
 }
 
 Response no_such_polygon(const Request& request, const Session& session, const std::string& id) {
@@ -124,8 +125,10 @@ Step<api::GltfOptions> require_gltf_options(const Request& request, std::string_
     return refuse(request, api::problem_of_faults(options.kind(), std::move(options.faults())));
 }
 
-Response gltf_response(const Request& request, const core::MeshData& mesh,
+Response gltf_response(Metrics& metrics, const Request& request, const core::MeshData& mesh,
                        const api::GltfOptions& options, const GltfAnswer& as) {
+    const EncodeMeter meter(metrics, as.type == kGlb ? EncodeFormat::Glb : EncodeFormat::Gltf,
+                            options.compression);
     auto written = as.type == kGlb ? api::write_glb(mesh, options, as.regions)
                                    : api::write_gltf(mesh, options, as.regions);
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
@@ -143,8 +146,9 @@ Response gltf_response(const Request& request, const core::MeshData& mesh,
     return response;
 }
 
-Response delta_response(const Request& request, const Session& session, std::uint64_t version,
-                        const std::optional<api::MeshDelta>& delta) {
+Response delta_response(Metrics& metrics, const Request& request, const Session& session,
+                        std::uint64_t version, const std::optional<api::MeshDelta>& delta) {
+    const EncodeMeter meter(metrics, EncodeFormat::Delta);
     if (delta) return ok(kDelta, api::write_delta(*delta));
     return refuse(request, api::ProblemType::OutOfMemory,
                   "There is no memory to send the delta now: get it later from /v1/sessions/" +
@@ -153,9 +157,9 @@ Response delta_response(const Request& request, const Session& session, std::uin
                       ".");
 }
 
-Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type,
-                    api::GltfOptions options) {
+Response mesh_after(Metrics& metrics, const Request& request, const Session& session,
+                    std::uint64_t version, const std::optional<core::MeshData>& mesh, bool dry_run,
+                    std::string_view type, api::GltfOptions options) {
     const std::string made =
         " The edit was made: the session has version " + std::to_string(version) + ".";
     if (!mesh) {
@@ -164,7 +168,8 @@ Response mesh_after(const Request& request, const Session& session, std::uint64_
     }
     options.unit_to_metre = api::metres_per(session.facts().unit);
     options.crs = session.facts().crs;
-    return gltf_response(request, *mesh, options, {type, nullptr, dry_run ? std::string() : made});
+    return gltf_response(metrics, request, *mesh, options,
+                         {type, nullptr, dry_run ? std::string() : made});
 }
 
 Response refuse_delta_of_dry_run(const Request& request) {
@@ -285,9 +290,9 @@ Step<BorrowedMemory> require_memory(Services& services, const Request& request, 
                       " with all meshes. Try again later, or DELETE sessions that are not needed.");
 }
 
-std::optional<Response> refusal_of_memory(const Services& services, const Request& request) {
+std::optional<Response> refusal_of_memory(Services& services, const Request& request) {
     const std::size_t most = services.limits.max_memory_bytes;
-    if (services.sessions.memory_bytes() <= most) return std::nullopt;
+    if (services.sessions.has_room(0)) return std::nullopt;
     return refuse(request, api::ProblemType::OutOfMemory,
                   "All meshes together have passed the limit max_memory_bytes of " +
                       std::to_string(most) + ". DELETE sessions that are not needed.");

@@ -13,6 +13,7 @@
 #include "api/requests.hpp"
 #include "server/edit.hpp"
 #include "server/http_message.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/routes/preconditions.hpp"
 #include "server/routes/step.hpp"
 #include "server/services.hpp"
@@ -23,7 +24,12 @@ namespace tinsmith::server {
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id);
 
-Response no_such_session(const Request& request, const std::string& id);
+/// 201 with a session that has been made.
+Response tell_created(const api::SessionView& view, const std::string& birth);
+/// How a version came about: the report of a request again; of another change what is told of it.
+Response tell_change(const Session& session, const ChangeCopy& change);
+
+Response no_such_session(const Services& services, const Request& request, const std::string& id);
 
 Response no_such_polygon(const Request& request, const Session& session, const std::string& id);
 
@@ -57,18 +63,18 @@ struct GltfAnswer {
 };
 
 /// The mesh as glTF, with headers that say what rounding did, or why it cannot be written.
-Response gltf_response(const Request& request, const core::MeshData& mesh,
+Response gltf_response(Metrics& metrics, const Request& request, const core::MeshData& mesh,
                        const api::GltfOptions& options, const GltfAnswer& as);
 
 /// What changed, or why it cannot be sent though the edit was made.
-Response delta_response(const Request& request, const Session& session, std::uint64_t version,
-                        const std::optional<api::MeshDelta>& delta);
+Response delta_response(Metrics& metrics, const Request& request, const Session& session,
+                        std::uint64_t version, const std::optional<api::MeshDelta>& delta);
 
 /// The mesh after an edit as glTF of that type. The edit is made even where its mesh cannot be
 /// sent, and the answer says so, unless it was a dry run.
-Response mesh_after(const Request& request, const Session& session, std::uint64_t version,
-                    const std::optional<core::MeshData>& mesh, bool dry_run, std::string_view type,
-                    api::GltfOptions options);
+Response mesh_after(Metrics& metrics, const Request& request, const Session& session,
+                    std::uint64_t version, const std::optional<core::MeshData>& mesh, bool dry_run,
+                    std::string_view type, api::GltfOptions options);
 
 /// 400: a dry run makes no version.
 Response refuse_delta_of_dry_run(const Request& request);
@@ -118,7 +124,7 @@ constexpr std::size_t bytes_to_encode(std::size_t mesh_bytes) {
 }
 
 /// 507, or nothing where all sessions together are within their limit of memory.
-std::optional<Response> refusal_of_memory(const Services& services, const Request& request);
+std::optional<Response> refusal_of_memory(Services& services, const Request& request);
 
 /// The allocator keeps what large meshes and their copies leave behind, for each thread its own, a
 /// gigabyte easily; it gives that back to the system only when told to.

@@ -81,9 +81,11 @@ std::vector<Route> make_routes(Services& services) {
     const auto mesh = api::mesh_option_names();
     static const auto polygons = with_gltf_options(api::polygon_option_names());
     static const auto edit = with_gltf_options(kEdit);
-    return {
+    std::vector<Route> routes{
         {"GET", "/", {}, to(get_page)},
         {"GET", "/healthz", {}, to(get_health)},
+        {"GET", "/readyz", {}, to(get_ready)},
+        {"GET", "/metrics", {}, to(get_metrics)},
         {"GET", "/openapi.json", {}, to(get_description)},
         {"GET", "/docs", {}, to(get_docs)},
         {"GET", "/docs/{file}", {}, to(get_docs_file)},
@@ -125,6 +127,11 @@ std::vector<Route> make_routes(Services& services) {
         {"POST", "/v1/sessions/{id}/profile", kCrs, long_json(ask_profile)},
         {"POST", "/v1/sessions/{id}/volume", {}, long_json(ask_volume)},
     };
+    for (Route& route : routes) {
+        if (route.pattern.starts_with("/v1/") && route.pattern != "/v1/limits")
+            route.handler = once_started(services, std::move(route.handler));
+    }
+    return routes;
 }
 
 }  // namespace tinsmith::server

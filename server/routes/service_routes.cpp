@@ -1,20 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "api/responses.hpp"
+#include "server/metrics/families.hpp"
+#include "server/metrics/scrape.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"
 
 namespace tinsmith::server {
 
+namespace {
+
+/// 503, with what is in the way. Requires: something is.
+Response refuse_unready(const Request& request, const std::vector<Readiness::Refusal>& refusals) {
+    api::Problem problem{api::ProblemType::NotReady, "Not ready", {}};
+    for (const auto& [code, why] : refusals) {
+        problem.detail += (problem.errors.empty() ? ": " : "; ") + why;
+        if (problem.errors.size() < api::kMaxFaults) problem.errors.push_back({code, why, {}});
+    }
+    problem.detail += ". Ask again in a moment, or another server.";
+    return refuse(request, problem).with("Retry-After", "1");
+}
+
+}  // namespace
+
 Response get_health(Services&, const Request&, const PathArguments&) {
     return ok(kJson, "{\"status\":\"ok\"}\n");
 }
 
+Response get_ready(Services& services, const Request& request, const PathArguments&) {
+    const auto refusals = services.readiness.refusals();
+    if (refusals.empty()) return ok(kJson, "{\"status\":\"ready\"}\n");
+    return refuse_unready(request, refusals);
+}
+
+Response get_metrics(Services& services, const Request&, const PathArguments&) {
+    return ok(kMetricsMediaType, scrape(services));
+}
+
+Handler once_started(Services& services, Handler handler) {
+    return [&services, handler = std::move(handler)](const Request& request,
+                                                     const PathArguments& arguments) {
+        if (services.readiness.phase() != Readiness::Phase::Starting)
+            return handler(request, arguments);
+        return refuse_unready(request, services.readiness.refusals());
+    };
+}
+
 Response get_limits(Services& services, const Request&, const PathArguments&) {
     const Limits& limits = services.limits;
-    const std::array<std::pair<std::string_view, double>, 18> list{{
+    const std::array<std::pair<std::string_view, double>, 19> list{{
         {"max_body_bytes", static_cast<double>(limits.max_body_bytes)},
         {"max_sessions", static_cast<double>(limits.max_sessions)},
         {"max_memory_bytes", static_cast<double>(limits.max_memory_bytes)},
@@ -32,6 +69,7 @@ Response get_limits(Services& services, const Request&, const PathArguments&) {
         {"job_bytes", static_cast<double>(limits.job_bytes)},
         {"job_seconds", static_cast<double>(limits.job_seconds)},
         {"mesh_cache", static_cast<double>(limits.mesh_cache)},
+        {"session_ttl", static_cast<double>(limits.session_ttl)},
         {"kept_answers", static_cast<double>(limits.kept_answers)},
     }};
     return ok(kJson, api::write_limits(list));

@@ -48,13 +48,6 @@ Response refuse_session(const Request& request, const Limits& limits, StoreRefus
                       " is reached. DELETE sessions that are not needed.");
 }
 
-Response tell_created(const Session& session) {
-    const api::SessionView view = session.view();
-    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
-    response.with("ETag", session.etag(view.version));
-    return response;
-}
-
 /// Reads the terrain and keeps it. No id: a random one.
 Response make_session(Services& services, const Request& request, std::optional<std::string> id) {
     const auto format = require_terrain_format(request);
@@ -71,23 +64,23 @@ Response make_session(Services& services, const Request& request, std::optional<
     if (const auto* why = std::get_if<StoreRefusal>(&added)) {
         return refuse_session(request, services.limits, *why);
     }
-    return tell_created(*std::get<0>(added));
+    return tell_created(services.sessions.view(*std::get<0>(added)),
+                        std::get<0>(added)->facts().birth);
 }
 
 }  // namespace
+
+Response tell_created(const api::SessionView& view, const std::string& birth) {
+    Response response = created("/v1/sessions/" + view.id, kJson, api::write_session(view));
+    response.with("ETag", '"' + birth + '-' + std::to_string(view.version) + '"');
+    return response;
+}
 
 Response list_sessions(Services& services, const Request& request, const PathArguments&) {
     const auto page = require_page(request, kCursorKind);
     if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
     const auto& [limit, after] = std::get<0>(page);
-    std::vector<api::SessionView> views;
-    bool more = false;
-    for (const auto& session : services.sessions.all()) {
-        if (session->facts().id <= after) continue;
-        more = views.size() == limit;
-        if (more) break;
-        views.push_back(session->view());
-    }
+    const auto [views, more] = services.sessions.page(after, limit);
     Response response = ok(kJson, api::write_session_list(views));
     if (more) response.with("Link", next_link(request, kCursorKind, limit, views.back().id));
     return response;
@@ -105,7 +98,7 @@ Response put_session(Services& services, const Request& request, const PathArgum
                       "in front.");
     }
     // Before the terrain is read, which takes long; the store has the last word all the same.
-    if (services.sessions.find(id)) {
+    if (services.sessions.contains(id)) {
         return refuse_session(request, services.limits, StoreRefusal::IdIsTaken);
     }
     return make_session(services, request, id);
@@ -115,7 +108,7 @@ Response get_session(Services& services, const Request& request, const PathArgum
     const auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
-    const api::SessionView view = session.view();
+    const api::SessionView view = services.sessions.view(session);
     if (auto answer = answer_to_conditions(request, session, view.version, {})) return *answer;
     Response response = ok(kJson, api::write_session(view));
     response.with("ETag", session.etag(view.version));
@@ -133,18 +126,21 @@ Response fork_session(Services& services, const Request& request, const PathArgu
     if (const auto* why = std::get_if<StoreRefusal>(&forked)) {
         return refuse_session(request, services.limits, *why);
     }
-    return tell_created(*std::get<0>(forked));
+    return tell_created(services.sessions.view(*std::get<0>(forked)),
+                        std::get<0>(forked)->facts().birth);
 }
 
 Response delete_session(Services& services, const Request& request,
                         const PathArguments& arguments) {
-    auto found = require_session(services, request, arguments[0]);
-    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
-    auto& session = std::get<0>(found);
     if (!request.body.empty()) {
         return refuse(request, api::ProblemType::BadRequest,
                       "There is no body here: leave it out.");
     }
+    if (const auto damaged = services.sessions.remove_damaged(arguments[0]))
+        return ok(kJson, api::write_session(*damaged));
+    auto found = require_session(services, request, arguments[0]);
+    if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
+    auto& session = std::get<0>(found);
     if (auto refusal = refusal_of_blind_edit(services, request, *session)) return *refusal;
     const auto expected = require_if_match(request, *session);
     if (const auto* refusal = std::get_if<Response>(&expected)) return *refusal;
@@ -153,7 +149,7 @@ Response delete_session(Services& services, const Request& request,
         case Removal::OtherVersion:
             return version_mismatch(request, *session, session->view().version);
         case Removal::Gone:
-            return no_such_session(request, arguments[0]);
+            return no_such_session(services, request, arguments[0]);
         case Removal::Done:
             break;
     }

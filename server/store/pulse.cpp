@@ -31,7 +31,7 @@ void Pulse::note_commit(double seconds, std::size_t entries, std::size_t bytes) 
     const auto place = std::lower_bound(bounds.begin(), bounds.end(), seconds);
     ++figures_.commits_within[static_cast<std::size_t>(std::distance(bounds.begin(), place))];
     lock.unlock();
-    if (first) log_info("journal: the disk takes commits again");
+    if (first) log_event(LogLevel::Info, "journal_recovered", "the disk takes commits again");
 }
 
 void Pulse::note_failure(const std::string& why) {
@@ -39,7 +39,7 @@ void Pulse::note_failure(const std::string& why) {
     ++figures_.failures;
     const bool first = fail(commits_, why);
     lock.unlock();
-    if (first) log_error("journal: " + why);
+    if (first) log_event(LogLevel::Error, "journal_failed", why);
 }
 
 void Pulse::note_checkpoint(double seconds) {
@@ -53,7 +53,7 @@ void Pulse::note_checkpoint_failure(const std::string& why) {
     std::unique_lock lock(mutex_);
     const bool first = fail(checkpoints_, why);
     lock.unlock();
-    if (first) log_error("journal: " + why);
+    if (first) log_event(LogLevel::Error, "journal_failed", why);
 }
 
 void Pulse::note_swept(std::uint64_t rows) {

@@ -114,7 +114,8 @@ void Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
         fault = commit_tasks({}, &side_work);
         // Nobody waits for these, and the table that takes no answers would hold up all commits.
         if (fault && is_of_rows(*fault)) {
-            log_warning("journal: kept answers are lost, " + told(*fault).text);
+            log_event(LogLevel::Warning, "journal_failed",
+                      "kept answers are lost, " + told(*fault).text);
             side_work = {};
             fault.reset();
         }
@@ -147,7 +148,7 @@ void Writer::commit_apart(std::vector<TaskPtr>& group) {
                 words.kind = JournalFault::Kind::Damaged;
                 words.text = place_of("the entries", (*first)->birth) + ": " + words.text;
                 catalog_.set_damage((*first)->birth, words.text);
-                log_error("journal: damaged: " + words.text);
+                log_event(LogLevel::Error, "session_damaged", words.text);
             }
             for (const TaskPtr& task : tasks) {
                 if (!task->refusal) task->refusal = words;
@@ -325,7 +326,9 @@ void Writer::drop_a_piece() {
     const Result fault = transact(0, 0, [&] { return drop_rows(idle, rows, more); });
     pulse_.note_swept(fault ? 0 : static_cast<std::uint64_t>(rows));
     if (fault && !is_of_rows(*fault)) return;  // again when the disk is well
-    if (fault) log_warning("journal: rows that count no more stay, " + told(*fault).text);
+    if (fault)
+        log_event(LogLevel::Warning, "journal_failed",
+                  "rows that count no more stay, " + told(*fault).text);
     if (!fault && more) return;
     const std::lock_guard lock(mutex_);
     idle_.pop_front();

@@ -47,6 +47,7 @@ const std::array<Home, 16> kHomes = {{
     {"nlohmann-json", R"(nlohmann/.*)", R"((api|server)/.*\.cpp)", false},
     {"CLI11", R"(CLI/.*)", R"(server/.*\.cpp)", false},
     {"spdlog", R"((spdlog|fmt)/.*)", R"(server/.*\.cpp)", false},
+    {"prometheus-cpp", R"(prometheus/.*)", R"(server/([a-z_]+/)*[a-z_]*metrics[a-z_/]*\.cpp)", false},
     {"OpenSSL", R"(openssl/.*)", R"(server/digest\.cpp)", true},
     {"zlib", R"(zlib\.h)", R"(server/gzip\.cpp)", true},
     {"SQLite", R"(sqlite3\.h)", R"(server/store/database\.cpp)", true},

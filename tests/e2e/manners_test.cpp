@@ -119,12 +119,13 @@ TEST_F(Manners, AnswerPreflightsAndLetPagesReadRefusals) {
 
 TEST_F(Manners, PassTracesOnAndLogThem) {
     const Answer answer =
-        send("GET", "/healthz", {"traceparent: 00-" + kTrace + "-b7ad6b7169203331-01"});
+        send("GET", "/v1/limits", {"traceparent: 00-" + kTrace + "-b7ad6b7169203331-01"});
     const std::string passed = answer.header("traceparent");
     EXPECT_TRUE(passed.starts_with("00-" + kTrace + "-")) << passed;
     EXPECT_EQ(passed.find("b7ad6b7169203331"), std::string::npos) << "the span is our own";
-    EXPECT_NE(server->program().output().find(" trace=" + kTrace + " span="), std::string::npos);
-    const Answer bad = send("GET", "/healthz", {"traceparent: 00-" + kTrace + "-bad"});
+    EXPECT_NE(server->program().output().find("\"trace\":\"" + kTrace + "\",\"span\":\""),
+              std::string::npos);
+    const Answer bad = send("GET", "/v1/limits", {"traceparent: 00-" + kTrace + "-bad"});
     EXPECT_EQ(bad.header("traceparent"), "");
     EXPECT_EQ(server->program().output().find("-bad"), std::string::npos);
 }

@@ -188,6 +188,7 @@ export const ELSEWHERE = {
   'out-of-memory': 'SessionStore.RefusesBeyondItsLimits',
   'job-unfinished': 'JobRoutes.AnswerAtOnceAndLater',
   'too-many-jobs': 'FewJobs.SayWhenToComeAgain',
+  'not-ready': 'ServiceRoutes.SayNotReadyWhileTheServerStarts',
   'stopped': 'SessionHistory.WorkThatIsStoppedChangesNothing',
   'internal': 'Router.TellsNothingOfAnException',
 };

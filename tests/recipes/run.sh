@@ -21,7 +21,7 @@ fail() {
     exit 1
 }
 
-"$program" serve --demo --port 0 --port-file "$scratch/port" >"$scratch/log" 2>&1 &
+"$program" serve --demo --log-format json --log-level debug --port 0 --port-file "$scratch/port" >"$scratch/log" 2>&1 &
 server=$!
 for _ in {1..600}; do
     [[ ! -s $scratch/port ]] || break
@@ -69,7 +69,7 @@ operations() {
 
 # The same of what the server's log says it answered with success.
 used() {
-    sed -nE 's/.* info ([A-Z]+) "([^"]*)" status=[23][0-9]{2} .*/\1 \2/p' "$scratch/log" | sort -u
+    jq -r 'select(.event == "request" and .status < 400) | .method + " " + .path' "$scratch/log" | sort -u
 }
 
 check_coverage() {
@@ -85,4 +85,4 @@ check_coverage() {
 (cd "$project" && docker/smoke.sh "$base")
 paste_all
 check_coverage
-if grep -E ' (warning|error) ' "$scratch/log"; then fail "the server complained"; fi
+if jq -e 'select(.level == "warning" or .level == "error")' "$scratch/log"; then fail "the server complained"; fi

@@ -85,6 +85,23 @@ TEST(CommandLine, ReadsServe) {
     EXPECT_EQ(config.log_level, LogLevel::Error);
 }
 
+TEST(CommandLine, ReadsHowToLogAndHowToStop) {
+    EXPECT_EQ(serve({}).log_format, LogFormat::Auto);
+    EXPECT_DOUBLE_EQ(serve({}).grace, 10.0);
+    EXPECT_DOUBLE_EQ(serve({}).drain_delay, 0.0);
+    const ServeConfig config =
+        serve({"--log-format", "JSON", "--grace", "2.5", "--drain-delay", "3"});
+    EXPECT_EQ(config.log_format, LogFormat::Json);
+    EXPECT_DOUBLE_EQ(config.grace, 2.5);
+    EXPECT_DOUBLE_EQ(config.drain_delay, 3.0);
+    for (const char* wrong : {"-1", "nan", "1e9", "soon"})
+        EXPECT_EQ(exit_code({"serve", "--grace", wrong}), kExitUsage) << wrong;
+    EXPECT_EQ(exit_code({"serve", "--log-format", "xml"}), kExitUsage);
+    ::setenv("TINSMITH_GRACE", "4", 1);
+    EXPECT_DOUBLE_EQ(serve({}).grace, 4.0);
+    ::unsetenv("TINSMITH_GRACE");
+}
+
 TEST(CommandLine, ReadsIntegrate) {
     const Command command = parse({"integrate", "t.tif", "p.json", "-o", "out.glb", "--improve",
                                    "none", "--dry-run", "true", "--tolerance", "0.1"});

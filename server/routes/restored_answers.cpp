@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/routes/restored_answers.hpp"
+
+#include <utility>
+
+#include "server/archive/packing.hpp"
+#include "server/routes/handlers.hpp"
+#include "server/routes/route_support.hpp"
+
+namespace tinsmith::server {
+
+template <>
+struct Parts<Response> {
+    static void each(auto& response, auto visit) {
+        visit(response.status, response.content_type, response.headers, response.body);
+    }
+};
+
+namespace {
+
+constexpr int kAccepted = 202;
+/// A larger one is told as its report once the process that sent it has ended.
+constexpr std::size_t kLargestStored = std::size_t{256} << 10;
+constexpr std::chrono::hours kAge{24};
+
+std::int64_t unix_seconds() {
+    using std::chrono::system_clock;
+    return std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch())
+        .count();
+}
+
+}  // namespace
+
+void store_answers(Services& services) {
+    Journal& journal = services.vault->journal();
+    services.answers.when_kept = [&journal](const KeptAnswers::Name& name, const std::string& print,
+                                            const Response& answer) {
+        // A job ends with the process that promised it.
+        if (answer.status == kAccepted || answer.body.size() > kLargestStored) return;
+        Packer pack;
+        pack(answer);
+        journal.keep_answer({name.first, name.second, print, unix_seconds(), pack.take()});
+    };
+    services.sessions.when_loaded = [&services](const LoadedSession& loaded) {
+        const Session& session = *loaded.session;
+        for (const auto& [version, key, print] : loaded.keyed) {
+            const auto copy = session.change_at(version);
+            if (const auto* change = std::get_if<ChangeCopy>(&copy))
+                services.answers.restore({session.facts().birth, key}, print,
+                                         tell_change(session, *change), {});
+        }
+    };
+}
+
+void restore_answers(Services& services) {
+    Journal& journal = services.vault->journal();
+    const std::int64_t now = unix_seconds();
+    const auto age = std::chrono::duration_cast<std::chrono::seconds>(kAge).count();
+    journal.forget_answers(now - age);
+    auto stored = journal.answers(now - age);
+    if (const auto* fault = std::get_if<JournalFault>(&stored)) throw StorageFault(fault->text);
+    for (const KeptAnswerRow& row : std::get<0>(stored)) {
+        Response answer;
+        Unpacker unpack(row.bytes);
+        unpack(answer);
+        if (!unpack.done()) continue;  // of another release
+        services.answers.restore({row.scope, row.key}, row.print, std::move(answer),
+                                 std::chrono::seconds(std::max<std::int64_t>(now - row.time, 0)));
+    }
+    for (const VaultEntry& made : services.vault->entries()) {
+        if (made.made_by.key.empty() || !made.damage.empty()) continue;
+        services.answers.restore({made.made_by.scope, made.made_by.key}, made.made_by.print,
+                                 tell_created(view_of(made.facts, made.counts), made.facts.birth),
+                                 {});
+    }
+}
+
+}  // namespace tinsmith::server
