@@ -18,7 +18,6 @@
 
 namespace prometheus {
 class Collectable;
-class Histogram;
 struct MetricFamily;
 }  // namespace prometheus
 
