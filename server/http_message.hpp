@@ -54,6 +54,7 @@ struct Response {
     bool close = false;  ///< end the connection: what follows on it cannot be trusted
     /// The pattern of the path that answered; null: none did. It lives as long as the router.
     const RouteMeter* route = nullptr;
+    std::string_view problem = {};  ///< the stable word of a refusal, for the log; else empty
 
     Response& with(std::string name, std::string value) {
         headers.emplace_back(std::move(name), std::move(value));

@@ -94,6 +94,7 @@ void log_request(const Request& request, const Response& response, double millis
         {"status", response.status},       {"bytes", bytes_sent(request, response)},
         {"bytes_in", request.body.size()}, {"ms", milliseconds},
         {"request", request.id},           {"client", request.remote_address}};
+    if (!response.problem.empty()) fields.emplace_back("problem", response.problem);
     if (request.trace) {
         fields.emplace_back("trace", request.trace->trace_id);
         fields.emplace_back("span", request.trace->parent_id);

@@ -22,11 +22,13 @@ Response not_modified(std::string etag) {
 }
 
 Response refuse(const Request& request, const api::Problem& problem) {
-    return {api::problem_status(problem.type),
-            std::string(api::kProblemMediaType),
-            {},
-            api::write_problem(problem, request.path, request.id),
-            false};
+    Response response{api::problem_status(problem.type),
+                      std::string(api::kProblemMediaType),
+                      {},
+                      api::write_problem(problem, request.path, request.id),
+                      false};
+    response.problem = api::problem_word(problem.type);
+    return response;
 }
 
 Response refuse(const Request& request, api::ProblemType type, std::string detail) {

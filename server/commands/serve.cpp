@@ -165,7 +165,7 @@ int serve_until_stopped(HttpServer& server, Services& services, const ServeConfi
     services.readiness.enter(Readiness::Phase::Draining);
     startup.stop();
     server.drain();
-    log_event(LogLevel::Info, "draining", "told to stop: no longer ready");
+    log_event(LogLevel::Info, "draining", "no longer ready");
     served.wait_for(delay);  // or until the socket fails
     log_event(LogLevel::Info, "stopping", "requests under way are answered first");
     server.stop();

@@ -35,7 +35,7 @@ const Buckets kRequestBuckets{0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025,
 const Buckets kWorkBuckets{0.0001, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025,
                            0.05,   0.1,    0.25,  1.0,    5.0,   30.0};
 
-enum Stage : std::size_t { kLocate, kIntegrate, kImprove, kApply, kRerun, kLock, kRest };
+enum Stage : std::size_t { Locate, Integrate, Improve, Apply, Rerun, Lock, Rest };
 constexpr std::array<const char*, 7> kStages{"locate", "integrate", "improve", "apply",
                                              "rerun",  "lock",      "rest"};
 /// In the order of EditSort.
@@ -162,10 +162,10 @@ void Metrics::observe(std::size_t stage, double seconds) noexcept {
 
 void Metrics::edited(const core::Report& report, double seconds, bool dry_run) noexcept {
     const core::StageTimes& ms = report.time_ms;
-    observe(kLocate, ms.locate * kMilli);
-    observe(kIntegrate, ms.integrate * kMilli);
-    observe(kImprove, ms.improve * kMilli);
-    observe(kRest, seconds - (ms.locate + ms.integrate + ms.improve) * kMilli);
+    observe(Locate, ms.locate * kMilli);
+    observe(Integrate, ms.integrate * kMilli);
+    observe(Improve, ms.improve * kMilli);
+    observe(Rest, seconds - (ms.locate + ms.integrate + ms.improve) * kMilli);
     if (dry_run) return;
     ++edits_[static_cast<std::size_t>(EditSort::Polygons)];
     for (const core::ShapeReport& shape : report.shapes) {
@@ -178,11 +178,11 @@ void Metrics::edited(const core::Report& report, double seconds, bool dry_run) n
 
 void Metrics::edited(const core::EditReport& report, double seconds, bool dry_run) noexcept {
     const core::StageTimes& ms = report.time_ms;
-    observe(kLocate, ms.locate * kMilli);
-    observe(kIntegrate, ms.integrate * kMilli);
-    observe(kImprove, ms.improve * kMilli);
-    observe(kApply, report.apply_ms * kMilli);
-    observe(kRest, seconds - (ms.locate + ms.integrate + ms.improve + report.apply_ms) * kMilli);
+    observe(Locate, ms.locate * kMilli);
+    observe(Integrate, ms.integrate * kMilli);
+    observe(Improve, ms.improve * kMilli);
+    observe(Apply, report.apply_ms * kMilli);
+    observe(Rest, seconds - (ms.locate + ms.integrate + ms.improve + report.apply_ms) * kMilli);
     if (dry_run) return;
     ++edits_[static_cast<std::size_t>(EditSort::Edit)];
     vertices_ += report.vertices_added;
@@ -190,7 +190,7 @@ void Metrics::edited(const core::EditReport& report, double seconds, bool dry_ru
 }
 
 void Metrics::edited(EditSort sort, double seconds, bool dry_run) noexcept {
-    observe(sort == EditSort::Locks ? kLock : kRerun, seconds);
+    observe(sort == EditSort::Locks ? Lock : Rerun, seconds);
     if (!dry_run) ++edits_[static_cast<std::size_t>(sort)];
 }
 

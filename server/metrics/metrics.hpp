@@ -19,7 +19,6 @@
 
 namespace prometheus {
 class Collectable;
-class Histogram;
 struct MetricFamily;
 }  // namespace prometheus
 

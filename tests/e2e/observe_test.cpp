@@ -152,6 +152,7 @@ TEST(Observe, NoRequestForgesALineOfTheLog) {
         for (const char* member : {"time", "level", "method", "path", "status", "bytes", "bytes_in",
                                    "ms", "request", "client"})
             EXPECT_TRUE(event.contains(member)) << member << " in " << line;
+        EXPECT_EQ(event.contains("problem"), event["status"] >= 400) << line;
         if (event["path"] != "/readyz") ++requests;
     }
     EXPECT_GE(sent, 4 * texts.size());

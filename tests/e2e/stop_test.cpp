@@ -122,6 +122,17 @@ TEST(ServiceStart, SaysNotReadyUntilTheSessionsAreThere) {
     EXPECT_EQ(server.program().wait(), 0) << server.program().output();
 }
 
+TEST(ServiceStart, FailsWhereTheTerrainIsNotThere) {
+    const ScratchDirectory scratch;
+    Program program({"serve", "--port", "0", "--demo", "--demo-terrain", scratch.file("none"),
+                     "--drain-delay", "600", "--grace", "600"},
+                    scratch.file("log"));
+    EXPECT_EQ(program.wait(), 1) << program.output();
+    EXPECT_TRUE(has_logged(program, "failed")) << program.output();
+    EXPECT_NE(program.output().find("--demo: "), std::string::npos);
+    EXPECT_FALSE(has_logged(program, "started"));
+}
+
 TEST(ServiceStop, EndsAStartThatDoesNotEnd) {
     StartingServer server({"--grace", "0.2"});
     ASSERT_NE(server.port(), 0) << server.program().output();

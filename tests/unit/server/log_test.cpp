@@ -121,6 +121,7 @@ TEST(Log, TellsRequestsWithAllThatIsKnownOfThem) {
     const auto lines = logged([&] {
         log_request(request, response, 1.5);
         request.method = "HEAD";
+        response.problem = "not-ready";
         log_request(request, response, 1.5);
     });
     ASSERT_EQ(lines.size(), 2U);
@@ -137,7 +138,9 @@ TEST(Log, TellsRequestsWithAllThatIsKnownOfThem) {
     EXPECT_EQ(line["client"], "127.0.0.1");
     EXPECT_EQ(line["trace"], "0af7651916cd43dd8448eb211c80319c");
     EXPECT_EQ(line["time"].get<std::string>().size(), 29U) << line["time"];
+    EXPECT_FALSE(line.contains("problem"));
     EXPECT_EQ(lines[1]["bytes"], 0) << "HEAD has no body";
+    EXPECT_EQ(lines[1]["problem"], "not-ready");
 }
 
 TEST(Log, TellsFailuresByTheirLevelAndProbesQuietly) {
