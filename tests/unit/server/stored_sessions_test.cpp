@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sessions with a vault, as a client meets them: over restarts, in too little memory, on disks that
+// are full or damaged.
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <thread>
+
+#include "core/algorithm.hpp"
+#include "server/archive/session_archive.hpp"
+#include "server/routes/restored_answers.hpp"
+#include "server/session_keeper.hpp"
+#include "tests/store/failing_disk.hpp"
+#include "tests/unit/server/handlers.hpp"
+#include "tests/unit/server/store/journal_folder.hpp"
+
+namespace tinsmith::server {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// One life of a server over a folder.
+class Life {
+  public:
+    Life(const JournalOptions& options, const Limits& limits, TailBounds tail = {})
+        : services_(limits, {}, open(options, limits, tail)) {
+        keeper_.emplace(services_);
+        store_answers(services_);
+        damaged_ = services_.sessions.take_up();
+        restore_answers(services_);
+        services_.sessions.load_all([] { return true; });
+        router_.emplace(make_routes(services_));
+    }
+
+    Response ask(const std::string& method, const std::string& target,
+                 std::vector<NameValue> headers = {}, const std::string& body = {}) {
+        auto parsed = parse_target(target).value();
+        Request request;
+        request.method = method;
+        request.path = parsed.path;
+        request.query = std::move(parsed.query);
+        request.headers = std::move(headers);
+        if (!body.empty()) request.headers.emplace_back("content-type", "application/json");
+        request.body = body;
+        request.id = "test";
+        Response response = router_->handle(request);
+        finish_answer(services_.policy, request, response);
+        EXPECT_EQ(Description::get().complaint(request, response), "") << method << " " << target;
+        return response;
+    }
+    Response make(const std::string& id) { return ask("PUT", "/v1/sessions/" + id, {}, kSquare); }
+    Response cut(const std::string& id, double at, std::vector<NameValue> headers = {}) {
+        json ring = json::array();
+        for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}, {0, 0}})
+            ring.push_back({at + x, at + y});
+        return ask("POST", "/v1/sessions/" + id + "/polygons", std::move(headers),
+                   json{{"type", "Polygon"}, {"coordinates", {ring}}}.dump());
+    }
+    std::string get(const std::string& path) {
+        const Response response = ask("GET", "/v1/sessions/" + path);
+        EXPECT_EQ(response.status, 200) << path << " " << response.body;
+        return response.body;
+    }
+    json view(const std::string& id) { return json::parse(get(id)); }
+
+    static std::string header_of(const Response& response, const std::string& name) {
+        for (const auto& [key, value] : response.headers)
+            if (key == name) return value;
+        return {};
+    }
+
+    Services& services() { return services_; }
+    SessionKeeper& keeper() { return *keeper_; }
+    const std::vector<std::string>& damaged() const { return damaged_; }
+
+  private:
+    static std::unique_ptr<SessionVault> open(const JournalOptions& options, const Limits& limits,
+                                              TailBounds tail) {
+        auto vault =
+            SessionVault::open(options, {limits.max_history, limits.max_history_bytes}, tail);
+        if (const auto* why = std::get_if<std::string>(&vault)) ADD_FAILURE() << *why;
+        return std::get<0>(std::move(vault));
+    }
+
+    Services services_;
+    std::optional<SessionKeeper> keeper_;
+    std::optional<Router> router_;
+    std::vector<std::string> damaged_;
+};
+
+class StoredSessions : public JournalFolder {
+  protected:
+    /// The old life ends first.
+    Life& restart(TailBounds tail = {}) {
+        life_.reset();
+        return life_.emplace(options_, limits_, tail);
+    }
+    void end() { life_.reset(); }
+    Life& life() { return life_ ? *life_ : restart(); }
+
+    void TearDown() override {
+        end();
+        JournalFolder::TearDown();
+    }
+
+    Limits limits_;
+
+  private:
+    std::optional<Life> life_;
+};
+
+TEST_F(StoredSessions, AreTheSameInTheNextLife) {
+    life().make("a");
+    EXPECT_EQ(life().cut("a", 2).status, 200);
+    EXPECT_EQ(life().cut("a", 5).status, 200);
+    life().ask("POST", "/v1/sessions/a/edits", {},
+               R"({"operation": "set", "polygon": "p2", "elevation": 7})");
+    life().ask("PUT", "/v1/sessions/a/locks", {},
+               R"({"type": "LineString", "coordinates": [[2,2],[3,2]]})");
+    life().ask("POST", "/v1/sessions/a/undo");
+    life().ask("DELETE", "/v1/sessions/a/polygons/p1");
+    life().ask("POST", "/v1/sessions/a/fork");
+    std::map<std::string, std::string> before;
+    const std::vector<std::string> paths{"a",          "a/mesh.json",         "a/history",
+                                         "a/polygons", "a/mesh?version=4",    "a/locks",
+                                         "a/regions",  "a/mesh.glb?version=2"};
+    for (const std::string& path : paths)
+        before[path] = life().get(path);
+    const std::string list = life().ask("GET", "/v1/sessions").body;
+    const std::string tag = Life::header_of(life().ask("GET", "/v1/sessions/a"), "ETag");
+    for (const bool is_in_order : {false, true}) {
+        if (is_in_order) life().keeper().snapshot_all(steady_clock::time_point::max());
+        restart();
+        for (const std::string& path : paths) {
+            if (path == "a") continue;  // what it holds in memory may differ
+            EXPECT_EQ(life().get(path) == before[path], true) << path;
+        }
+        EXPECT_EQ(Life::header_of(life().ask("GET", "/v1/sessions/a"), "ETag"), tag);
+        EXPECT_EQ(json::parse(life().ask("GET", "/v1/sessions").body)["sessions"].size(), 2U);
+    }
+    // And it goes on: ids and versions where they were.
+    const json report = json::parse(life().cut("a", 8).body);
+    EXPECT_EQ(report["version"], 8);
+    EXPECT_EQ(report["polygons"][0]["id"], "p3");
+    EXPECT_EQ(life().ask("POST", "/v1/sessions/a/undo").status, 200);
+    EXPECT_EQ(life().ask("POST", "/v1/sessions/a/undo").status, 200) << "what the first life did";
+}
+
+TEST_F(StoredSessions, ThatAreDeletedStayDeleted) {
+    life().make("a");
+    life().make("b");
+    EXPECT_EQ(life().ask("DELETE", "/v1/sessions/a").status, 200);
+    restart();
+    EXPECT_EQ(life().ask("GET", "/v1/sessions/a").status, 404);
+    EXPECT_EQ(life().view("b")["version"], 1);
+    EXPECT_EQ(life().make("a").status, 201) << "its id is free";
+}
+
+TEST_F(StoredSessions, AnswerRetriesOfTheLifeBefore) {
+    life().make("a");
+    const std::vector<NameValue> key{{"idempotency-key", "k-1"}}, other{{"idempotency-key", "k-2"}};
+    const Response first = life().cut("a", 2, key);
+    const Response forked = life().ask("POST", "/v1/sessions/a/fork", other);
+    restart();
+    const Response again = life().cut("a", 2, key);
+    EXPECT_EQ(again.status, 200);
+    EXPECT_EQ(Life::header_of(again, "Idempotency-Replayed"), "true");
+    EXPECT_EQ(json::parse(again.body)["version"], json::parse(first.body)["version"]);
+    EXPECT_EQ(life().cut("a", 3, key).status, 422) << "another request with the key";
+    EXPECT_EQ(life().view("a")["version"], 2);
+    const Response fork_again = life().ask("POST", "/v1/sessions/a/fork", other);
+    EXPECT_EQ(Life::header_of(fork_again, "Location"), Life::header_of(forked, "Location"));
+    EXPECT_EQ(life().services().sessions.size(), 2U);
+}
+
+TEST_F(StoredSessions, LeaveMemoryForOthersAndComeBack) {
+    life().make("probe");
+    const auto each = life().view("probe")["memory_bytes"].get<std::size_t>();
+    limits_.max_memory_bytes = 6 * each;
+    restart();
+    for (int i = 0; i < 12; ++i)
+        ASSERT_EQ(life().make("s" + std::to_string(i)).status, 201) << i;
+    EXPECT_LE(life().services().sessions.memory_bytes(), limits_.max_memory_bytes);
+    EXPECT_LT(life().services().sessions.totals().in_memory, 8U);
+    for (int round = 1; round <= 2; ++round) {
+        for (int i = 0; i < 12; ++i) {
+            const std::string id = "s" + std::to_string(i);
+            ASSERT_EQ(life().cut(id, round * 3).status, 200) << id;
+            EXPECT_LE(life().services().sessions.memory_bytes(), limits_.max_memory_bytes);
+        }
+    }
+    for (int i = 0; i < 12; ++i)
+        EXPECT_EQ(life().view("s" + std::to_string(i))["version"], 3);
+    const json list = json::parse(life().ask("GET", "/v1/sessions").body)["sessions"];
+    EXPECT_EQ(list.size(), 13U);
+    for (const json& session : list)
+        EXPECT_EQ(session["version"], session["id"] == "probe" ? 1 : 3) << "loaded or not";
+    // What somebody holds stays.
+    const auto held = life().services().sessions.find("s0");
+    for (int i = 1; i < 12; ++i)
+        life().get("s" + std::to_string(i));
+    EXPECT_TRUE(life().services().sessions.is_kept(*held));
+}
+
+TEST_F(StoredSessions, EndWhereNobodyAsksForThem) {
+    limits_.session_ttl = 3600;
+    restart();
+    life().make("a");
+    const std::string expires = life().view("a")["expires"];
+    EXPECT_EQ(expires.size(), 20U);
+    EXPECT_EQ(expires.back(), 'Z');
+    using std::chrono::system_clock;
+    const auto now = system_clock::to_time_t(system_clock::now());
+    EXPECT_TRUE(life().services().sessions.remove_unused_since(now - 3600).empty());
+    EXPECT_EQ(life().services().sessions.remove_unused_since(now + 10).size(), 1U);
+    EXPECT_EQ(life().ask("GET", "/v1/sessions/a").status, 404);
+    restart();
+    EXPECT_EQ(life().ask("GET", "/v1/sessions/a").status, 404);
+}
+
+TEST_F(StoredSessions, AreStoredAnewWhenTheirTailIsLong) {
+    restart({10, std::size_t{1} << 30, 1e9});
+    life().make("a");
+    for (int i = 0; i < 25; ++i)
+        life().ask("POST", "/v1/sessions/a/" + std::string(i % 2 == 0 ? "undo" : "redo"));
+    for (int i = 0; i < 12; ++i)
+        ASSERT_EQ(life().cut("a", 1 + i % 4 * 2).status, 200);
+    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const auto until = steady_clock::now() + std::chrono::seconds(20);
+    std::uint64_t stored = 1;
+    while (stored == 1 && steady_clock::now() < until) {
+        stored = std::get<0>(life().services().vault->journal().read(birth)).head.version;
+        std::this_thread::yield();
+    }
+    EXPECT_GE(stored, 11U);
+    const std::string mesh = life().get("a/mesh.json");
+    restart();
+    EXPECT_EQ(life().get("a/mesh.json") == mesh, true);
+}
+
+TEST_F(StoredSessions, ThatAreDamagedAreOutOfServiceAlone) {
+    life().make("a");
+    life().make("b");
+    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    // A change that nobody made: its digest is not what doing it gives.
+    const auto fault = life().services().vault->journal().append({birth,
+                                                                  2,
+                                                                  core::kAlgorithm,
+                                                                  pack(ChangeAsked(UndoAsked{})),
+                                                                  std::string(32, 'x'),
+                                                                  {},
+                                                                  {},
+                                                                  pack(SessionCounts{})});
+    ASSERT_FALSE(fault);
+    restart();
+    const Response refused = life().ask("GET", "/v1/sessions/a");
+    EXPECT_EQ(refused.status, 503);
+    EXPECT_NE(refused.body.find("session-out-of-service"), std::string::npos);
+    EXPECT_EQ(life().cut("a", 2).status, 503);
+    EXPECT_EQ(life().cut("b", 2).status, 200);
+    const json list = json::parse(life().ask("GET", "/v1/sessions").body)["sessions"];
+    EXPECT_EQ(list[0]["id"], "a");
+    EXPECT_NE(list[0]["notes"].dump().find("Out of service"), std::string::npos);
+    EXPECT_EQ(life().make("a").status, 409) << "until it is deleted";
+    EXPECT_EQ(life().ask("DELETE", "/v1/sessions/a").status, 200);
+    EXPECT_EQ(life().make("a").status, 201);
+}
+
+TEST_F(StoredSessions, OfAnotherAlgorithmAreReadOnly) {
+    life().make("a");
+    life().cut("a", 2);
+    const std::string mesh = life().get("a/mesh.json");
+    life().keeper().snapshot_all(steady_clock::time_point::max());
+    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    ASSERT_FALSE(life().services().vault->journal().append({birth,
+                                                            3,
+                                                            core::kAlgorithm + 1,
+                                                            "whatever it does",
+                                                            std::string(32, 'x'),
+                                                            {},
+                                                            {},
+                                                            pack(SessionCounts{})}));
+    restart();
+    EXPECT_EQ(life().get("a/mesh.json") == mesh, true);
+    EXPECT_NE(life().view("a")["notes"].dump().find("read-only"), std::string::npos);
+    const Response refused = life().cut("a", 5);
+    EXPECT_EQ(refused.status, 409);
+    EXPECT_NE(refused.body.find("session-read-only"), std::string::npos);
+    EXPECT_EQ(life().get("a/mesh.json") == mesh, true) << "nothing of it stays";
+}
+
+TEST_F(StoredSessions, RefuseEditsWhileTheDiskIsFullAndGoOnAfter) {
+    store_tests::FailingDisk disk("stored-sessions-disk");
+    options_.vfs = disk.name();
+    options_.probe_every = std::chrono::milliseconds(5);
+    life().make("a");
+    life().cut("a", 2);
+    const std::string mesh = life().get("a/mesh.json"), history = life().get("a/history");
+    for (const auto work :
+         {store_tests::FailingDisk::Work::Write, store_tests::FailingDisk::Work::Sync}) {
+        disk.fail(work, store_tests::FailingDisk::Fault::Full, 0, UINT64_MAX);
+        for (const Response& refused :
+             {life().cut("a", 5), life().ask("POST", "/v1/sessions/a/undo"),
+              life().ask("DELETE", "/v1/sessions/a/polygons/p1"), life().make("b"),
+              life().ask("DELETE", "/v1/sessions/a")}) {
+            EXPECT_EQ(refused.status, 503) << refused.body;
+            EXPECT_NE(refused.body.find("storage-unavailable"), std::string::npos);
+        }
+        EXPECT_FALSE(life().services().vault->journal().health().fine);
+        EXPECT_EQ(life().get("a/mesh.json") == mesh, true);
+        EXPECT_EQ(life().get("a/history"), history);
+        EXPECT_EQ(life().ask("GET", "/v1/sessions/b").status, 404);
+        disk.mend();
+        const auto until = steady_clock::now() + std::chrono::seconds(20);
+        while (!life().services().vault->journal().health().fine && steady_clock::now() < until)
+            std::this_thread::yield();
+        EXPECT_TRUE(life().services().vault->journal().health().fine);
+    }
+    EXPECT_EQ(life().cut("a", 5).status, 200);
+    EXPECT_EQ(life().make("b").status, 201);
+    const std::string after = life().get("a/mesh.json");
+    restart();
+    EXPECT_EQ(life().get("a/mesh.json") == after, true);
+    end();  // before the disk
+}
+
+}  // namespace
+}  // namespace tinsmith::server
