@@ -124,10 +124,8 @@ Committed Journal::Implementation::write_snapshot(const std::string& birth,
                                                   const SnapshotHead& head,
                                                   std::string_view bytes) {
     if (auto refused = too_large(head.view.size() + head.digest.size(), birth)) return refused;
-    const auto known = catalog_.find(birth);
-    if (!known) return store::gone(birth);
+    if (!catalog_.find(birth)) return store::gone(birth);
     store::Publish publish;
-    publish.number = known->number;
     publish.snapshot.head = head;
     return write_parts(birth, std::move(publish), bytes);
 }
@@ -210,19 +208,22 @@ std::variant<std::vector<SessionRow>, JournalFault> Journal::Implementation::ses
 std::variant<StoredSession, JournalFault> Journal::Implementation::read(
     const std::string& birth) const {
     if (is_closed_) return closed();
-    const auto known = catalog_.find(birth);
-    if (!known) return store::gone(birth);
-    auto opened = open_to_read();
-    if (const auto* refused = std::get_if<store::DatabaseFault>(&opened))
-        return store::fault_from(*refused, "opening the store to read");
-    const std::uint64_t most =
-        size_of(store::database_file(options_.folder)) + size_of(store::log_file(options_.folder));
-    auto stored =
-        store::read_session(std::get<store::Database>(opened), known->number, birth, most);
-    // Removed since the look into the catalog: that is no damage.
-    if (std::holds_alternative<JournalFault>(stored) && !catalog_.find(birth))
-        return store::gone(birth);
-    return stored;
+    for (;;) {
+        const auto known = catalog_.find(birth);
+        if (!known) return store::gone(birth);
+        auto opened = open_to_read();
+        if (const auto* refused = std::get_if<store::DatabaseFault>(&opened))
+            return store::fault_from(*refused, "opening the store to read");
+        const std::uint64_t most = size_of(store::database_file(options_.folder)) +
+                                   size_of(store::log_file(options_.folder));
+        auto stored = store::read_session(std::get<store::Database>(opened), known->number, birth,
+                                          known->newest, most);
+        if (std::holds_alternative<StoredSession>(stored)) return stored;
+        // Removed or moved since the look into the catalog: that is no damage. A session is moved
+        // once or twice in its life.
+        const auto now = catalog_.find(birth);
+        if (now && now->number == known->number) return stored;
+    }
 }
 
 std::variant<std::vector<KeptAnswerRow>, JournalFault> Journal::Implementation::answers(

@@ -109,7 +109,7 @@ class Journal {
     void touch(const std::string& birth, std::int64_t unix_seconds) noexcept;
     void keep_answer(KeptAnswerRow answer) noexcept;
 
-    /// As they are now, in the order in which they were made, the damaged ones among them.
+    /// As they are now, the damaged ones among them.
     std::variant<std::vector<SessionRow>, JournalFault> sessions() const;
 
     /// Does not wait for commits. Cost: linear in the bytes, and twice them in memory for a moment

@@ -32,6 +32,7 @@ RowWriter::RowWriter(Database database)
       answer_(database_.prepare("INSERT INTO answer(at, scope, key, print, time, sum, bytes) "
                                 "VALUES(?, ?, ?, ?, ?, ?, ?)")),
       probe_(database_.prepare("INSERT OR REPLACE INTO probe(at, time) VALUES(1, ?)")),
+      move_used_(database_.prepare("UPDATE used SET number = ? WHERE number = ?")),
       remove_session_(database_.prepare("DELETE FROM session WHERE number = ?")),
       remove_snapshot_(database_.prepare("DELETE FROM snapshot WHERE session = ?")),
       remove_used_(database_.prepare("DELETE FROM used WHERE number = ?")),
@@ -96,6 +97,10 @@ RowWriter::Result RowWriter::set_snapshot(std::int64_t number, std::string_view 
 
 RowWriter::Result RowWriter::set_used(std::int64_t number, std::int64_t time) {
     return used_.bind(1, number).bind(2, time).run();
+}
+
+RowWriter::Result RowWriter::move_used(std::int64_t from, std::int64_t to) {
+    return move_used_.bind(1, to).bind(2, from).run();
 }
 
 RowWriter::Result RowWriter::remove_session(std::int64_t number) {

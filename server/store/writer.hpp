@@ -84,6 +84,7 @@ class Writer {
 
     void commit_group(std::vector<TaskPtr> group, SideWork side_work);
     void commit_apart(std::vector<TaskPtr>& group);
+    bool move_session(const std::string& birth);
     void commit_large(TaskPtr task);
     void drop_a_piece();
     RowWriter::Result drop_rows(const Idle& idle, std::int64_t& rows, bool& more);

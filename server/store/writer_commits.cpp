@@ -137,16 +137,19 @@ void Writer::commit_apart(std::vector<TaskPtr>& group) {
     std::stable_sort(group.begin(), group.end(),
                      [](const TaskPtr& a, const TaskPtr& b) { return a->birth < b->birth; });
     for (auto first = group.begin(); first != group.end();) {
-        const auto last = std::find_if(first, group.end(), [first](const TaskPtr& task) {
-            return task->birth != (*first)->birth;
-        });
+        const std::string& birth = (*first)->birth;
+        const auto last = std::find_if(
+            first, group.end(), [&birth](const TaskPtr& task) { return task->birth != birth; });
         const std::span<const TaskPtr> tasks(first, last);
-        if (const Result fault = commit_tasks(tasks, nullptr)) {
+        Result fault = commit_tasks(tasks, nullptr);
+        if (fault && is_of_rows(*fault) && move_session(birth))
+            fault = commit_tasks(tasks, nullptr);
+        if (fault) {
             JournalFault words = told(*fault);
             if (is_of_rows(*fault)) {
                 words.kind = JournalFault::Kind::Damaged;
-                words.text = place_of("the entries", (*first)->birth) + ": " + words.text;
-                catalog_.set_damage((*first)->birth, words.text);
+                words.text = place_of("the entries", birth) + ": " + words.text;
+                catalog_.set_damage(birth, words.text);
                 log_error("journal: damaged: " + words.text);
             }
             for (const TaskPtr& task : tasks) {
@@ -155,6 +158,39 @@ void Writer::commit_apart(std::vector<TaskPtr>& group) {
         }
         first = last;
     }
+}
+
+/// To a place of its own behind all others, if each of its rows can be read. An entry that fills a
+/// page is laid out anew with the pages beside it, and one of those may be a neighbour's and
+/// damaged: that must not stop this session.
+bool Writer::move_session(const std::string& birth) {
+    const auto known = catalog_.find(birth);
+    if (!known) return false;
+    const std::int64_t number = catalog_.new_session();
+    bool is_whole = false;
+    const Result fault = transact(0, 0, [&]() -> Result {
+        const auto read = read_rows(rows_->database(), known->number, birth, known->newest);
+        const auto* rows = std::get_if<SessionRows>(&read);
+        if (rows == nullptr) return std::nullopt;
+        is_whole = true;
+        wrote_ = true;
+        if (auto refused = rows_->move_used(known->number, number)) return refused;
+        if (auto refused = rows_->remove_session(known->number)) return refused;
+        if (auto refused = rows_->add_session(number, rows->facts)) return refused;
+        if (auto refused = rows_->set_snapshot(number, birth, rows->snapshot)) return refused;
+        for (const JournalEntry& entry : rows->tail) {
+            if (auto refused = rows_->add_entry(number, entry, sum_of(entry))) return refused;
+        }
+        return std::nullopt;
+    });
+    if (fault || !is_whole) return false;
+    catalog_.set_number(birth, number);
+    add_idle({Idle::What::Entries,
+              {entry_key(known->number, 0), entry_key(known->number, kLastVersion)},
+              0});
+    log_warning("journal: rows beside those of session " + sanitized(birth) +
+                " are damaged; it was moved away from them, whole");
+    return true;
 }
 
 void Writer::commit_large(TaskPtr task) {
@@ -221,8 +257,8 @@ Result Writer::do_entry(Task& task, const AddEntry& add,
 }
 
 Result Writer::do_publish(Task& task, const Publish& publish) {
+    const auto known = catalog_.find(task.birth);
     if (!publish.made) {
-        const auto known = catalog_.find(task.birth);
         const std::uint64_t version = publish.snapshot.head.version;
         if (!known) {
             task.refusal = gone(task.birth);
@@ -242,7 +278,8 @@ Result Writer::do_publish(Task& task, const Publish& publish) {
         if (auto fault = rows_->add_session(publish.number, *publish.made)) return fault;
         if (auto fault = rows_->set_used(publish.number, publish.made->used)) return fault;
     }
-    return rows_->set_snapshot(publish.number, task.birth, publish.snapshot);
+    const std::int64_t number = publish.made ? publish.number : known->number;
+    return rows_->set_snapshot(number, task.birth, publish.snapshot);
 }
 
 Result Writer::do_remove(Task& task) {
