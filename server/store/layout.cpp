@@ -27,7 +27,8 @@ constexpr const char* kNewFile = R"sql(
     CREATE TABLE session(number INTEGER PRIMARY KEY, birth BLOB NOT NULL, id BLOB NOT NULL,
         facts BLOB NOT NULL, key BLOB NOT NULL, print BLOB NOT NULL, made INTEGER NOT NULL,
         sum INTEGER NOT NULL) STRICT;
-    CREATE TABLE used(number INTEGER PRIMARY KEY, time INTEGER NOT NULL) STRICT;
+    CREATE TABLE used(number INTEGER PRIMARY KEY, time INTEGER NOT NULL,
+        newest INTEGER NOT NULL, sum INTEGER NOT NULL) STRICT;
     CREATE TABLE snapshot(session INTEGER PRIMARY KEY, number INTEGER NOT NULL,
         parts INTEGER NOT NULL, version INTEGER NOT NULL, algorithm INTEGER NOT NULL,
         format INTEGER NOT NULL, bytes INTEGER NOT NULL, digest BLOB NOT NULL,
@@ -145,6 +146,10 @@ std::int64_t sum_of(std::int64_t number, std::string_view birth, const SnapshotR
         {unsigned_of(number), unsigned_of(snapshot.number), unsigned_of(snapshot.parts),
          head.version, head.algorithm, head.format, head.bytes},
         {birth, head.digest, head.view});
+}
+
+std::int64_t sum_of(std::int64_t number, const UsedRow& used) {
+    return sum_of_row("used", {unsigned_of(number), unsigned_of(used.time), used.newest}, {});
 }
 
 std::int64_t sum_of(const KeptAnswerRow& answer) {

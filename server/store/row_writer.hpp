@@ -31,8 +31,7 @@ class RowWriter {
     Result add_part(std::int64_t key, std::string_view bytes, std::int64_t sum);
     Result add_session(std::int64_t number, const SessionFacts& session);
     Result set_snapshot(std::int64_t number, std::string_view birth, const SnapshotRow& snapshot);
-    Result set_used(std::int64_t number, std::int64_t time);
-    Result move_used(std::int64_t from, std::int64_t to);
+    Result set_used(std::int64_t number, const UsedRow& used);
     Result remove_session(std::int64_t number);
     Result add_answer(std::int64_t key, const KeptAnswerRow& answer);
     /// Writes that it was here: whether the disk takes anything.
@@ -53,7 +52,7 @@ class RowWriter {
   private:
     Database database_;  // before its statements, which end before it
     Statement look_, begin_, commit_, roll_back_, entry_, part_, session_, snapshot_, used_,
-        answer_, probe_, move_used_, remove_session_, remove_snapshot_, remove_used_, drop_entries_,
+        answer_, probe_, remove_session_, remove_snapshot_, remove_used_, drop_entries_,
         drop_parts_, drop_answers_;
 };
 

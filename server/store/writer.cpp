@@ -144,8 +144,10 @@ void Writer::run() {
         }
         const bool last_turn = state_ != State::Working && queue_.empty() && large_.empty();
         do_turn(lock);
-        if (last_turn) return;
+        if (last_turn) break;
     }
+    lock.unlock();
+    mark_newest();
 }
 
 /// Requires: the lock.

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -89,6 +90,7 @@ class Writer {
     void drop_a_piece();
     RowWriter::Result drop_rows(const Idle& idle, std::int64_t& rows, bool& more);
     void probe();
+    void mark_newest();
     void checkpoint();
 
     /// One transaction around the work. Rolled back, and told, where it fails.
@@ -123,8 +125,9 @@ class Writer {
 
     // Of the thread alone.
     std::unique_ptr<RowWriter> rows_;
-    bool broken_ = false;  ///< the connection has met an I/O error
-    bool wrote_ = false;   ///< something, in the transaction under way
+    bool broken_ = false;             ///< the connection has met an I/O error
+    bool wrote_ = false;              ///< something, in the transaction under way
+    std::set<std::string> unmarked_;  ///< births that have versions which `used` does not know of
     std::int64_t next_answer_;
     std::uint64_t answer_bytes_;
     Clock::time_point next_probe_;

@@ -174,7 +174,9 @@ bool Writer::move_session(const std::string& birth) {
         if (rows == nullptr) return std::nullopt;
         is_whole = true;
         wrote_ = true;
-        if (auto refused = rows_->move_used(known->number, number)) return refused;
+        const auto used = RowReader(rows_->database()).used(known->number);
+        const std::int64_t time = used ? used->time : rows->facts.used;
+        if (auto refused = rows_->set_used(number, {time, known->newest})) return refused;
         if (auto refused = rows_->remove_session(known->number)) return refused;
         if (auto refused = rows_->add_session(number, rows->facts)) return refused;
         if (auto refused = rows_->set_snapshot(number, birth, rows->snapshot)) return refused;
@@ -276,7 +278,8 @@ Result Writer::do_publish(Task& task, const Publish& publish) {
     if (auto fault = rows_->add_part(part.key, part.bytes, part.sum)) return fault;
     if (publish.made) {
         if (auto fault = rows_->add_session(publish.number, *publish.made)) return fault;
-        if (auto fault = rows_->set_used(publish.number, publish.made->used)) return fault;
+        const UsedRow used{publish.made->used, publish.snapshot.head.version};
+        if (auto fault = rows_->set_used(publish.number, used)) return fault;
     }
     const std::int64_t number = publish.made ? publish.number : known->number;
     return rows_->set_snapshot(number, task.birth, publish.snapshot);
@@ -297,7 +300,7 @@ Result Writer::do_side_work(const SideWork& side_work) {
         const auto known = catalog_.find(birth);
         if (!known) continue;
         wrote_ = true;
-        if (auto fault = rows_->set_used(known->number, time)) return fault;
+        if (auto fault = rows_->set_used(known->number, {time, known->newest})) return fault;
     }
     std::int64_t key = next_answer_;
     for (const KeptAnswerRow& answer : side_work.answers) {
@@ -321,6 +324,7 @@ void Writer::count_answers(const SideWork& side_work) {
 void Writer::enter_into_catalog(const Task& task) {
     if (const auto* add = std::get_if<AddEntry>(&task.what)) {
         catalog_.set_newest(task.birth, add->entry.version);
+        unmarked_.insert(task.birth);
         return;
     }
     if (std::holds_alternative<AddPart>(task.what)) return;
@@ -401,6 +405,23 @@ void Writer::probe() {
     transact(0, 0, [this]() -> Result {
         wrote_ = true;
         return rows_->probe(unix_now());
+    });
+}
+
+/// So that the next one knows how far each session went, also where rows have vanished since.
+void Writer::mark_newest() {
+    transact(0, 0, [this]() -> Result {
+        RowReader reader(rows_->database());
+        for (const std::string& birth : unmarked_) {
+            const auto known = catalog_.find(birth);
+            if (!known || !known->damage.empty()) continue;
+            auto used = reader.used(known->number);
+            if (!used) continue;
+            used->newest = known->newest;
+            wrote_ = true;
+            if (auto fault = rows_->set_used(known->number, *used)) return fault;
+        }
+        return std::nullopt;
     });
 }
 
