@@ -88,7 +88,12 @@ class Writer {
     bool move_session(const std::string& birth);
     void commit_large(TaskPtr task);
     void drop_a_piece();
-    RowWriter::Result drop_rows(const Idle& idle, std::int64_t& rows, bool& more);
+    struct Dropped {
+        std::int64_t rows = 0;
+        std::int64_t answer_bytes = 0;
+        bool more = false;
+    };
+    RowWriter::Result drop_rows(const Idle& idle, Dropped& dropped);
     void probe();
     void mark_newest();
     void checkpoint();
