@@ -28,9 +28,12 @@ struct JournalOptions {
     std::size_t queue_entries = 4000;
     std::size_t queue_bytes = std::size_t{64} << 20;
     /// Snapshots go in parts of so many bytes, a commit each.
-    std::size_t part_bytes = std::size_t{2} << 20;
+    std::size_t part_bytes = std::size_t{1} << 20;
     /// A log of so many pages of 4 KiB is moved into the file, in some tens of milliseconds.
-    int log_pages = 2000;
+    int log_pages = 1000;
+    /// Makes the log that long at the start. A sync of a file that grows costs many times one of a
+    /// file that is written over.
+    bool grow_log = true;
     /// Of kept answers that wait for a commit, and of those that are stored.
     std::size_t waiting_answer_bytes = std::size_t{16} << 20;
     std::size_t stored_answer_bytes = std::size_t{256} << 20;

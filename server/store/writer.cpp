@@ -133,6 +133,7 @@ void Writer::close() {
 }
 
 void Writer::run() {
+    if (options_.grow_log) grow_log();
     std::unique_lock lock(mutex_);
     for (;;) {
         while (!has_work()) {

@@ -94,6 +94,7 @@ class Writer {
         bool more = false;
     };
     RowWriter::Result drop_rows(const Idle& idle, Dropped& dropped);
+    void grow_log();
     void probe();
     void mark_newest();
     void checkpoint();

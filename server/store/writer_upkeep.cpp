@@ -68,6 +68,20 @@ Result Writer::drop_rows(const Idle& idle, Dropped& dropped) {
     return fault;
 }
 
+/// With a part of no snapshot, which is dropped at once; the room that it took in the file is the
+/// first that is used. Once it is moved, the log begins anew and keeps its length.
+void Writer::grow_log() {
+    const std::string bytes(static_cast<std::size_t>(std::max(options_.log_pages, 1)) * 4096, 'x');
+    const std::int64_t number = catalog_.new_snapshot();
+    const Result fault = transact(0, 0, [&] {
+        wrote_ = true;
+        return rows_->add_part(part_key(number, 0), bytes, 0);
+    });
+    if (fault) return;
+    checkpoint();
+    give_up(parts_of(number));
+}
+
 /// A small durable write: the disk takes commits again, or it does not.
 void Writer::probe() {
     const auto now = std::chrono::duration_cast<std::chrono::seconds>(
