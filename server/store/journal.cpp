@@ -54,6 +54,29 @@ Committed too_large(std::size_t bytes, const std::string& birth) {
                      " that can be stored");
 }
 
+/// Parts that the writer reads from the caller's bytes: they are waited for, whatever happens.
+class UnderWay {
+  public:
+    UnderWay() = default;
+    UnderWay(const UnderWay&) = delete;
+    UnderWay& operator=(const UnderWay&) = delete;
+    ~UnderWay() {
+        for (const auto& part : parts_)
+            part.wait();
+    }
+    bool empty() const { return parts_.empty(); }
+    std::size_t size() const { return parts_.size(); }
+    void add(std::future<Committed> part) { parts_.push_back(std::move(part)); }
+    Committed wait_for_first() {
+        Committed done = parts_.front().get();
+        parts_.pop_front();
+        return done;
+    }
+
+  private:
+    std::deque<std::future<Committed>> parts_;
+};
+
 }  // namespace
 
 class Journal::Implementation {
@@ -110,14 +133,19 @@ Committed Journal::Implementation::create(const SessionFacts& session, const Sna
         return fault(JournalFault::Kind::Conflict, "the version is beyond 2^36");
     if (auto refused = too_large(session.facts.size() + head.view.size(), session.birth))
         return refused;
-    if (auto refused = catalog_.reserve(session)) return refused;
     store::Publish publish;
     publish.made = session;
     publish.number = catalog_.new_session();
     publish.snapshot.head = head;
-    Committed outcome = write_parts(session.birth, std::move(publish), bytes);
-    if (outcome) catalog_.release(session);
-    return outcome;
+    if (auto refused = catalog_.reserve(session)) return refused;
+    try {
+        Committed outcome = write_parts(session.birth, std::move(publish), bytes);
+        if (outcome) catalog_.release(session);
+        return outcome;
+    } catch (...) {
+        catalog_.release(session);
+        throw;
+    }
 }
 
 Committed Journal::Implementation::write_snapshot(const std::string& birth,
@@ -148,10 +176,9 @@ Committed Journal::Implementation::write_parts(const std::string& birth, store::
     publish.snapshot.head.bytes = bytes.size();
 
     Committed outcome;
-    std::deque<std::future<Committed>> under_way;
+    UnderWay under_way;
     const auto wait_for_one = [&outcome, &under_way] {
-        auto done = under_way.front().get();
-        under_way.pop_front();
+        Committed done = under_way.wait_for_first();
         if (done && !outcome) outcome = std::move(done);
     };
     for (std::size_t i = 0; i < parts && !outcome; ++i) {
@@ -170,10 +197,9 @@ Committed Journal::Implementation::write_parts(const std::string& birth, store::
             publish.last_part = part;
             task->what = std::move(publish);
         }
-        under_way.push_back(writer_.submit_large(std::move(task)));
+        under_way.add(writer_.submit_large(std::move(task)));
         if (under_way.size() >= kPartsAtATime) wait_for_one();
     }
-    // The writer reads from `bytes` until then.
     while (!under_way.empty())
         wait_for_one();
     if (outcome) writer_.give_up(store::parts_of(number));
