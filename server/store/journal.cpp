@@ -5,6 +5,8 @@
 #include <atomic>
 #include <deque>
 #include <future>
+#include <memory>
+#include <new>
 #include <system_error>
 #include <tuple>
 #include <utility>

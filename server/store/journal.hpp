@@ -78,8 +78,8 @@ struct JournalFigures {
 /// versions without a hole. A snapshot or a new session is there whole or not at all. What is read
 /// is what was written: a damaged row takes its session out of service, by a fault that names it,
 /// and no other. After a fault the next call may go through: nothing has to be opened again.
-/// Not promised: that a refused change is absent after a crash that comes while the disk still
-/// fails (the log may hold it whole); a client that retries by its key finds out.
+/// Not promised: that a refused change is absent where the process ends while the disk still fails
+/// (the log may hold it whole); a client that retries by its key finds out.
 /// Threads: all functions may be called from any thread; `append` of one session from one at a
 /// time, for its order is that of the calls. Calls end before the destructor begins.
 /// Nothing here throws but std::bad_alloc.
@@ -115,8 +115,8 @@ class Journal {
     /// As they are now, the damaged ones among them.
     std::variant<std::vector<SessionRow>, JournalFault> sessions() const;
 
-    /// Does not wait for commits. Cost: linear in the bytes, and twice them in memory for a moment
-    /// at most.
+    /// Waits for no commit. Cost: linear in the bytes. The log grows while it reads: what others
+    /// commit meanwhile cannot be moved into the file.
     std::variant<StoredSession, JournalFault> read(const std::string& birth) const;
 
     /// The oldest first. Of one scope and key the last counts. Damaged ones are left out.
@@ -129,7 +129,8 @@ class Journal {
     JournalHealth health() const;
     JournalFigures figures() const;
 
-    /// Takes no more on, makes durable what waits, and leaves one file with all in it.
+    /// Takes no more on, makes durable what waits, and leaves one file with all in it. From one
+    /// thread at a time.
     void close() noexcept;
 
   private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
-#include <chrono>
+#include <cstdio>
 #include <cstdlib>
-#include <map>
+#include <functional>
 #include <optional>
 #include <random>
 #include <string>
