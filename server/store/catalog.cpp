@@ -18,9 +18,11 @@ Catalog::Catalog(const Inventory& inventory)
         const SessionRow& row = listed.row;
         if (row.session.birth.empty()) continue;  // damaged: nothing can be said to it by name
         ids_.insert(row.session.id);
+        // Of a damaged one the newest is not known: whoever reads it is to meet the damage.
+        const std::uint64_t newest = row.damage.empty() ? row.version : kLastVersion;
         sessions_.try_emplace(row.session.birth,
-                              Known{listed.number, row.session.id, row.version,
-                                    row.snapshot_version, listed.snapshot, row.damage});
+                              Known{listed.number, row.session.id, newest, row.snapshot_version,
+                                    listed.snapshot, row.damage});
     }
 }
 
@@ -81,6 +83,12 @@ void Catalog::remove(const std::string& birth) {
     if (found == sessions_.end()) return;
     ids_.erase(found->second.id);
     sessions_.erase(found);
+}
+
+void Catalog::set_number(const std::string& birth, std::int64_t number) {
+    const std::lock_guard lock(mutex_);
+    const auto found = sessions_.find(birth);
+    if (found != sessions_.end()) found->second.number = number;
 }
 
 void Catalog::set_newest(const std::string& birth, std::uint64_t version) {

@@ -41,6 +41,7 @@ class Catalog {
 
     void add(const StoredFacts& session, Known known);
     void remove(const std::string& birth);
+    void set_number(const std::string& birth, std::int64_t number);
     void set_newest(const std::string& birth, std::uint64_t version);
     void set_snapshot(const std::string& birth, std::int64_t snapshot, std::uint64_t version);
     void set_damage(const std::string& birth, const std::string& damage);

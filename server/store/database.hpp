@@ -24,6 +24,9 @@ struct DatabaseFault {
     };
     Kind kind = Kind::Io;
     std::string text;
+
+    /// Whether rows are to blame, those of one session perhaps, and not the disk.
+    bool is_of_rows() const { return kind == Kind::Corrupt || kind == Kind::Taken; }
 };
 
 /// A prepared statement, used again and again: bind all, step until it is done. It starts over by

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <deque>
 #include <future>
+#include <memory>
+#include <new>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -53,6 +55,29 @@ Committed too_large(std::size_t bytes, const std::string& birth) {
                      " is larger than the " + std::to_string(store::kLargestRow) +
                      " that can be stored");
 }
+
+/// Parts that the writer reads from the caller's bytes: they are waited for, whatever happens.
+class UnderWay {
+  public:
+    UnderWay() = default;
+    UnderWay(const UnderWay&) = delete;
+    UnderWay& operator=(const UnderWay&) = delete;
+    ~UnderWay() {
+        for (const auto& part : parts_)
+            part.wait();
+    }
+    bool empty() const { return parts_.empty(); }
+    std::size_t size() const { return parts_.size(); }
+    void add(std::future<Committed> part) { parts_.push_back(std::move(part)); }
+    Committed wait_for_first() {
+        Committed done = parts_.front().get();
+        parts_.pop_front();
+        return done;
+    }
+
+  private:
+    std::deque<std::future<Committed>> parts_;
+};
 
 }  // namespace
 
@@ -110,24 +135,27 @@ Committed Journal::Implementation::create(const StoredFacts& session, const Snap
         return fault(JournalFault::Kind::Conflict, "the version is beyond 2^36");
     if (auto refused = too_large(session.facts.size() + head.view.size(), session.birth))
         return refused;
-    if (auto refused = catalog_.reserve(session)) return refused;
     store::Publish publish;
     publish.made = session;
     publish.number = catalog_.new_session();
     publish.snapshot.head = head;
-    Committed outcome = write_parts(session.birth, std::move(publish), bytes);
-    if (outcome) catalog_.release(session);
-    return outcome;
+    if (auto refused = catalog_.reserve(session)) return refused;
+    try {
+        Committed outcome = write_parts(session.birth, std::move(publish), bytes);
+        if (outcome) catalog_.release(session);
+        return outcome;
+    } catch (...) {
+        catalog_.release(session);
+        throw;
+    }
 }
 
 Committed Journal::Implementation::write_snapshot(const std::string& birth,
                                                   const SnapshotHead& head,
                                                   std::string_view bytes) {
     if (auto refused = too_large(head.view.size() + head.digest.size(), birth)) return refused;
-    const auto known = catalog_.find(birth);
-    if (!known) return store::gone(birth);
+    if (!catalog_.find(birth)) return store::gone(birth);
     store::Publish publish;
-    publish.number = known->number;
     publish.snapshot.head = head;
     return write_parts(birth, std::move(publish), bytes);
 }
@@ -150,10 +178,9 @@ Committed Journal::Implementation::write_parts(const std::string& birth, store::
     publish.snapshot.head.bytes = bytes.size();
 
     Committed outcome;
-    std::deque<std::future<Committed>> under_way;
+    UnderWay under_way;
     const auto wait_for_one = [&outcome, &under_way] {
-        auto done = under_way.front().get();
-        under_way.pop_front();
+        Committed done = under_way.wait_for_first();
         if (done && !outcome) outcome = std::move(done);
     };
     for (std::size_t i = 0; i < parts && !outcome; ++i) {
@@ -172,10 +199,9 @@ Committed Journal::Implementation::write_parts(const std::string& birth, store::
             publish.last_part = part;
             task->what = std::move(publish);
         }
-        under_way.push_back(writer_.submit_large(std::move(task)));
+        under_way.add(writer_.submit_large(std::move(task)));
         if (under_way.size() >= kPartsAtATime) wait_for_one();
     }
-    // The writer reads from `bytes` until then.
     while (!under_way.empty())
         wait_for_one();
     if (outcome) writer_.give_up(store::parts_of(number));
@@ -210,19 +236,22 @@ std::variant<std::vector<SessionRow>, JournalFault> Journal::Implementation::ses
 std::variant<StoredSession, JournalFault> Journal::Implementation::read(
     const std::string& birth) const {
     if (is_closed_) return closed();
-    const auto known = catalog_.find(birth);
-    if (!known) return store::gone(birth);
-    auto opened = open_to_read();
-    if (const auto* refused = std::get_if<store::DatabaseFault>(&opened))
-        return store::fault_from(*refused, "opening the store to read");
-    const std::uint64_t most =
-        size_of(store::database_file(options_.folder)) + size_of(store::log_file(options_.folder));
-    auto stored =
-        store::read_session(std::get<store::Database>(opened), known->number, birth, most);
-    // Removed since the look into the catalog: that is no damage.
-    if (std::holds_alternative<JournalFault>(stored) && !catalog_.find(birth))
-        return store::gone(birth);
-    return stored;
+    for (;;) {
+        const auto known = catalog_.find(birth);
+        if (!known) return store::gone(birth);
+        auto opened = open_to_read();
+        if (const auto* refused = std::get_if<store::DatabaseFault>(&opened))
+            return store::fault_from(*refused, "opening the store to read");
+        const std::uint64_t most = size_of(store::database_file(options_.folder)) +
+                                   size_of(store::log_file(options_.folder));
+        auto stored = store::read_session(std::get<store::Database>(opened), known->number, birth,
+                                          known->newest, most);
+        if (std::holds_alternative<StoredSession>(stored)) return stored;
+        // Removed or moved since the look into the catalog: that is no damage. A session is moved
+        // once or twice in its life.
+        const auto now = catalog_.find(birth);
+        if (now && now->number == known->number) return stored;
+    }
 }
 
 std::variant<std::vector<KeptAnswerRow>, JournalFault> Journal::Implementation::answers(

@@ -28,9 +28,12 @@ struct JournalOptions {
     std::size_t queue_entries = 4000;
     std::size_t queue_bytes = std::size_t{64} << 20;
     /// Snapshots go in parts of so many bytes, a commit each.
-    std::size_t part_bytes = std::size_t{2} << 20;
+    std::size_t part_bytes = std::size_t{1} << 20;
     /// A log of so many pages of 4 KiB is moved into the file, in some tens of milliseconds.
-    int log_pages = 2000;
+    int log_pages = 1000;
+    /// Makes the log that long at the start. A sync of a file that grows costs many times one of a
+    /// file that is written over.
+    bool grow_log = true;
     /// Of kept answers that wait for a commit, and of those that are stored.
     std::size_t waiting_answer_bytes = std::size_t{16} << 20;
     std::size_t stored_answer_bytes = std::size_t{256} << 20;
@@ -75,8 +78,8 @@ struct JournalFigures {
 /// versions without a hole. A snapshot or a new session is there whole or not at all. What is read
 /// is what was written: a damaged row takes its session out of service, by a fault that names it,
 /// and no other. After a fault the next call may go through: nothing has to be opened again.
-/// Not promised: that a refused change is absent after a crash that comes while the disk still
-/// fails (the log may hold it whole); a client that retries by its key finds out.
+/// Not promised: that a refused change is absent where the process ends while the disk still fails
+/// (the log may hold it whole); a client that retries by its key finds out.
 /// Threads: all functions may be called from any thread; `append` of one session from one at a
 /// time, for its order is that of the calls. Calls end before the destructor begins.
 /// Nothing here throws but std::bad_alloc.
@@ -109,11 +112,11 @@ class Journal {
     void touch(const std::string& birth, std::int64_t unix_seconds) noexcept;
     void keep_answer(KeptAnswerRow answer) noexcept;
 
-    /// As they are now, in the order in which they were made, the damaged ones among them.
+    /// As they are now, the damaged ones among them.
     std::variant<std::vector<SessionRow>, JournalFault> sessions() const;
 
-    /// Does not wait for commits. Cost: linear in the bytes, and twice them in memory for a moment
-    /// at most.
+    /// Waits for no commit. Cost: linear in the bytes. The log grows while it reads: what others
+    /// commit meanwhile cannot be moved into the file.
     std::variant<StoredSession, JournalFault> read(const std::string& birth) const;
 
     /// The oldest first. Of one scope and key the last counts. Damaged ones are left out.
@@ -126,7 +129,8 @@ class Journal {
     JournalHealth health() const;
     JournalFigures figures() const;
 
-    /// Takes no more on, makes durable what waits, and leaves one file with all in it.
+    /// Takes no more on, makes durable what waits, and leaves one file with all in it. From one
+    /// thread at a time.
     void close() noexcept;
 
   private:

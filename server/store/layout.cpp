@@ -17,17 +17,13 @@ namespace {
 constexpr std::int64_t kApplication = 0x544e534d;
 constexpr std::int64_t kFormat = 1;
 
-/// EXTRA until there is a write-ahead log: should the power fail, the journal of the change to one
-/// could be there again and take it back, and the log with it.
-constexpr const char* kNewFile = R"sql(
-    PRAGMA synchronous = EXTRA;
-    PRAGMA journal_mode = WAL;
-    PRAGMA synchronous = FULL;
+constexpr const char* kTables = R"sql(
     BEGIN IMMEDIATE;
     CREATE TABLE session(number INTEGER PRIMARY KEY, birth BLOB NOT NULL, id BLOB NOT NULL,
         facts BLOB NOT NULL, key BLOB NOT NULL, print BLOB NOT NULL, made INTEGER NOT NULL,
         sum INTEGER NOT NULL) STRICT;
-    CREATE TABLE used(number INTEGER PRIMARY KEY, time INTEGER NOT NULL) STRICT;
+    CREATE TABLE used(number INTEGER PRIMARY KEY, time INTEGER NOT NULL,
+        newest INTEGER NOT NULL, sum INTEGER NOT NULL) STRICT;
     CREATE TABLE snapshot(session INTEGER PRIMARY KEY, number INTEGER NOT NULL,
         parts INTEGER NOT NULL, version INTEGER NOT NULL, algorithm INTEGER NOT NULL,
         format INTEGER NOT NULL, bytes INTEGER NOT NULL, digest BLOB NOT NULL,
@@ -94,6 +90,23 @@ std::string foreign(const std::filesystem::path& file, const std::string& why) {
            "); move it away, or give another folder";
 }
 
+/// Empty where the file has a write-ahead log from now on. EXTRA meanwhile: should the power fail,
+/// the journal of the change to one could be there again and take it back, and the log with it.
+std::string use_log(Database& database, const std::filesystem::path& file) {
+    auto fault = database.run("PRAGMA synchronous = EXTRA");
+    Statement change = database.prepare("PRAGMA journal_mode = WAL");
+    if (!fault && change.step() == Statement::Step::Failed) fault = change.fault();
+    // Where the system has no shared memory for its index, SQLite says how it goes on instead.
+    const std::string mode = fault ? std::string() : change.bytes(0);
+    change.reset();
+    if (!fault) fault = database.run("PRAGMA synchronous = FULL");
+    if (fault) return file.string() + ": " + fault->text;
+    if (mode == "wal") return {};
+    return file.string() +
+           " can have no write-ahead log, its file system does not let it; give "
+           "a folder on a local disk";
+}
+
 /// Empty where the file is a store of ours, made now if there was nothing.
 std::string check_format(Database& database, const std::filesystem::path& file,
                          Database::Access access) {
@@ -111,7 +124,8 @@ std::string check_format(Database& database, const std::filesystem::path& file,
     const auto [application, format, tables] = found;
     if (application == 0 && format == 0 && tables == 0) {
         if (access == Database::Access::Read) return foreign(file, "it is empty");
-        const auto fault = database.run(kNewFile);
+        if (std::string why = use_log(database, file); !why.empty()) return why;
+        const auto fault = database.run(kTables);
         return fault ? file.string() + ": " + fault->text : std::string();
     }
     if (application != kApplication) return foreign(file, "another program made it");
@@ -119,7 +133,7 @@ std::string check_format(Database& database, const std::filesystem::path& file,
         return file.string() + " has format " + std::to_string(format) +
                ", and this program knows format " + std::to_string(kFormat) +
                ": it was written by a newer Tinsmith, use that one";
-    return {};
+    return access == Database::Access::Write ? use_log(database, file) : std::string();
 }
 
 }  // namespace
@@ -145,6 +159,10 @@ std::int64_t sum_of(std::int64_t number, std::string_view birth, const SnapshotR
         {unsigned_of(number), unsigned_of(snapshot.number), unsigned_of(snapshot.parts),
          head.version, head.algorithm, head.format, head.bytes},
         {birth, head.digest, head.view});
+}
+
+std::int64_t sum_of(std::int64_t number, const UsedRow& used) {
+    return sum_of_row("used", {unsigned_of(number), unsigned_of(used.time), used.newest}, {});
 }
 
 std::int64_t sum_of(const KeptAnswerRow& answer) {

@@ -52,12 +52,19 @@ struct SnapshotRow {
     SnapshotHead head;
 };
 
+/// A row of `used`: written now and then, and when the journal is closed.
+struct UsedRow {
+    std::int64_t time = 0;     ///< Unix seconds
+    std::uint64_t newest = 0;  ///< a version that was there
+};
+
 /// Eight bytes of the SHA-256 over all that a row holds and where it belongs, so that neither a
 /// flipped bit nor a row in another's place goes unseen.
 std::int64_t sum_of(const JournalEntry& entry);
 std::int64_t sum_of_part(std::string_view birth, std::int64_t key, std::string_view bytes);
 std::int64_t sum_of(std::int64_t number, const StoredFacts& session);
 std::int64_t sum_of(std::int64_t number, std::string_view birth, const SnapshotRow& snapshot);
+std::int64_t sum_of(std::int64_t number, const UsedRow& used);
 std::int64_t sum_of(const KeptAnswerRow& answer);
 
 std::filesystem::path database_file(const std::filesystem::path& folder);

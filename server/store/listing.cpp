@@ -65,7 +65,7 @@ std::int64_t after_last(const Walk& walk) {
 }
 
 /// A fault of the disk; damage is told in the row.
-std::optional<JournalFault> list_one(RowReader& reader, Statement& used, Listed& listed) {
+std::optional<JournalFault> list_one(RowReader& reader, Listed& listed) {
     SessionRow& row = listed.row;
     const auto is_read = [&row](const std::optional<JournalFault>& fault) {
         if (fault && row.damage.empty()) row.damage = fault->text;
@@ -87,9 +87,14 @@ std::optional<JournalFault> list_one(RowReader& reader, Statement& used, Listed&
         row.version = newest->version;
         row.view = std::move(newest->view);
     }
-    if (used.bind(1, listed.number).step() == Step::Row) {
-        row.session.used = used.integer(0);
-        used.reset();
+    if (const auto used = reader.used(listed.number)) {
+        row.session.used = used->time;
+        // A damaged head of a page can hide rows from SQLite without a word.
+        if (row.damage.empty() && used->newest > row.version)
+            row.damage = place_of("versions " + std::to_string(row.version + 1) + " to " +
+                                      std::to_string(used->newest),
+                                  row.session.birth) +
+                         " are missing";
     }
     return std::nullopt;
 }
@@ -112,11 +117,10 @@ std::variant<Sessions, JournalFault> list_all(Database& database) {
     walk.whole = sessions.whole = walk.whole && others.whole;
     sessions.next = after_last(walk);
     RowReader reader(database);
-    Statement used = database.prepare("SELECT time FROM used WHERE number = ?");
     for (const std::int64_t number : walk.numbers) {
         Listed listed;
         listed.number = number;
-        if (auto fault = list_one(reader, used, listed)) return std::move(*fault);
+        if (auto fault = list_one(reader, listed)) return std::move(*fault);
         sessions.whole = sessions.whole && listed.row.damage.empty();
         sessions.next_snapshot = std::max(sessions.next_snapshot, listed.snapshot + 1);
         sessions.rows.push_back(std::move(listed));

@@ -18,7 +18,8 @@ bool Pulse::fail(JournalHealth& health, const std::string& why) {
     return first;
 }
 
-void Pulse::note_commit(double seconds, std::size_t entries, std::size_t bytes) {
+void Pulse::note_commit(Duration time, std::size_t entries, std::size_t bytes) {
+    const double seconds = std::chrono::duration<double>(time).count();
     std::unique_lock lock(mutex_);
     const bool first = !commits_.fine;
     commits_ = {};
@@ -42,11 +43,11 @@ void Pulse::note_failure(const std::string& why) {
     if (first) log_event(LogLevel::Error, "journal_failed", why);
 }
 
-void Pulse::note_checkpoint(double seconds) {
+void Pulse::note_checkpoint(Duration time) {
     const std::lock_guard lock(mutex_);
     checkpoints_ = {};
     ++figures_.checkpoints;
-    figures_.checkpoint_seconds += seconds;
+    figures_.checkpoint_seconds += std::chrono::duration<double>(time).count();
 }
 
 void Pulse::note_checkpoint_failure(const std::string& why) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -14,9 +15,11 @@ namespace tinsmith::server::store {
 /// over a commit.
 class Pulse {
   public:
-    void note_commit(double seconds, std::size_t entries, std::size_t bytes);
+    using Duration = std::chrono::steady_clock::duration;
+
+    void note_commit(Duration time, std::size_t entries, std::size_t bytes);
     void note_failure(const std::string& why);
-    void note_checkpoint(double seconds);
+    void note_checkpoint(Duration time);
     void note_checkpoint_failure(const std::string& why);
     void note_swept(std::uint64_t rows);
     void note_answers_dropped(std::uint64_t answers);

@@ -40,9 +40,21 @@ std::variant<std::vector<Listed>, JournalFault> list_sessions(Database& database
 /// Cost: a few looks for each session, and one for each answer.
 std::variant<Inventory, JournalFault> take_inventory(Database& database);
 
-/// Session `number`, which is that of `birth`. `most_bytes`: no more can be in the file.
+/// Of a session: where its snapshot is, and the entries since then, up to version `newest`. What
+/// stands behind the last of them is not looked at: it may be another's, and damaged.
+struct SessionRows {
+    StoredFacts facts;
+    SnapshotRow snapshot;
+    std::vector<JournalEntry> tail;
+};
+std::variant<SessionRows, JournalFault> read_rows(Database& database, std::int64_t number,
+                                                  const std::string& birth, std::uint64_t newest);
+
+/// All of it, as it was at one moment not before this call. `newest`: a version that is there.
+/// `most_bytes`: no more can be in the file.
 std::variant<StoredSession, JournalFault> read_session(Database& database, std::int64_t number,
                                                        const std::string& birth,
+                                                       std::uint64_t newest,
                                                        std::uint64_t most_bytes);
 
 std::variant<std::vector<KeptAnswerRow>, JournalFault> read_answers(Database& database,

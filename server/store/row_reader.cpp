@@ -41,6 +41,7 @@ RowReader::RowReader(const Database& database)
           "SELECT birth, id, facts, key, print, made, sum FROM session WHERE number = ?")),
       snapshot_(database.prepare("SELECT number, parts, version, algorithm, format, bytes, digest, "
                                  "view, sum FROM snapshot WHERE session = ?")),
+      used_(database.prepare("SELECT time, newest, sum FROM used WHERE number = ?")),
       part_(database.prepare("SELECT bytes, sum FROM part WHERE at = ?")),
       newest_(database.prepare((std::string(kEntryColumns) + " ORDER BY at DESC LIMIT 1").c_str())),
       entries_(database.prepare((std::string(kEntryColumns) + " ORDER BY at").c_str())) {}
@@ -80,6 +81,14 @@ std::optional<JournalFault> RowReader::snapshot(std::int64_t number, const std::
     snapshot_.reset();
     if (!whole) return not_as_written(place);
     return std::nullopt;
+}
+
+std::optional<UsedRow> RowReader::used(std::int64_t number) {
+    if (used_.bind(1, number).step() != Step::Row) return std::nullopt;
+    const UsedRow row{used_.integer(0), unsigned_of(used_.integer(1))};
+    const bool whole = used_.integer(2) == sum_of(number, row);
+    used_.reset();
+    return whole ? std::optional(row) : std::nullopt;
 }
 
 std::optional<JournalFault> RowReader::part(std::int64_t key, const std::string& birth,

@@ -22,6 +22,8 @@ class RowReader {
     std::optional<JournalFault> session(std::int64_t number, StoredFacts& out);
     std::optional<JournalFault> snapshot(std::int64_t number, const std::string& birth,
                                          SnapshotRow& out);
+    /// Nothing where it is not what was written: the rest of the session does without.
+    std::optional<UsedRow> used(std::int64_t number);
     /// Appends it.
     std::optional<JournalFault> part(std::int64_t key, const std::string& birth, std::string& out);
     /// The newest of the session after that version; unchanged where there is none.
@@ -39,6 +41,7 @@ class RowReader {
 
     Statement session_;
     Statement snapshot_;
+    Statement used_;
     Statement part_;
     Statement newest_;
     Statement entries_;

@@ -28,7 +28,8 @@ RowWriter::RowWriter(Database database)
       snapshot_(database_.prepare(
           "INSERT OR REPLACE INTO snapshot(session, number, parts, version, algorithm, format, "
           "bytes, digest, view, sum) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-      used_(database_.prepare("INSERT OR REPLACE INTO used(number, time) VALUES(?, ?)")),
+      used_(database_.prepare(
+          "INSERT OR REPLACE INTO used(number, time, newest, sum) VALUES(?, ?, ?, ?)")),
       answer_(database_.prepare("INSERT INTO answer(at, scope, key, print, time, sum, bytes) "
                                 "VALUES(?, ?, ?, ?, ?, ?, ?)")),
       probe_(database_.prepare("INSERT OR REPLACE INTO probe(at, time) VALUES(1, ?)")),
@@ -94,8 +95,12 @@ RowWriter::Result RowWriter::set_snapshot(std::int64_t number, std::string_view 
         .run();
 }
 
-RowWriter::Result RowWriter::set_used(std::int64_t number, std::int64_t time) {
-    return used_.bind(1, number).bind(2, time).run();
+RowWriter::Result RowWriter::set_used(std::int64_t number, const UsedRow& used) {
+    return used_.bind(1, number)
+        .bind(2, used.time)
+        .bind(3, signed_of(used.newest))
+        .bind(4, sum_of(number, used))
+        .run();
 }
 
 RowWriter::Result RowWriter::remove_session(std::int64_t number) {

@@ -31,7 +31,7 @@ class RowWriter {
     Result add_part(std::int64_t key, std::string_view bytes, std::int64_t sum);
     Result add_session(std::int64_t number, const StoredFacts& session);
     Result set_snapshot(std::int64_t number, std::string_view birth, const SnapshotRow& snapshot);
-    Result set_used(std::int64_t number, std::int64_t time);
+    Result set_used(std::int64_t number, const UsedRow& used);
     Result remove_session(std::int64_t number);
     Result add_answer(std::int64_t key, const KeptAnswerRow& answer);
     /// Writes that it was here: whether the disk takes anything.
@@ -44,6 +44,8 @@ class RowWriter {
     Result drop_answers(std::int64_t most, std::int64_t older_than, std::int64_t& done,
                         std::int64_t& freed);
 
+    /// To read what this connection sees.
+    Database& database() { return database_; }
     int pages_to_move() { return database_.pages_to_move(); }
     Result checkpoint() { return database_.checkpoint(); }
 

@@ -15,7 +15,7 @@ struct JournalFault {
         Io,        ///< the disk, or the system, refused
         Damaged,   ///< what is stored of this session is not what was written
         Closed,    ///< the journal is closing or closed
-        Conflict,  ///< the id is taken, or the version is not the next one
+        Conflict,  ///< the id is taken, the version not the next one, or too much for a row
         Gone,      ///< no session of that birth: removed, or never made
     };
     Kind kind = Kind::Io;

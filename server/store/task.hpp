@@ -29,7 +29,7 @@ struct AddPart {
 /// The last part of a snapshot, and with it the snapshot counts.
 struct Publish {
     std::optional<StoredFacts> made;  ///< of a new session
-    std::int64_t number = 0;          ///< of the session
+    std::int64_t number = 0;          ///< of that one
     SnapshotRow snapshot;
     AddPart last_part;
 };

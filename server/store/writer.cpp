@@ -133,6 +133,7 @@ void Writer::close() {
 }
 
 void Writer::run() {
+    if (options_.grow_log) grow_log();
     std::unique_lock lock(mutex_);
     for (;;) {
         while (!has_work()) {
@@ -144,8 +145,10 @@ void Writer::run() {
         }
         const bool last_turn = state_ != State::Working && queue_.empty() && large_.empty();
         do_turn(lock);
-        if (last_turn) return;
+        if (last_turn) break;
     }
+    lock.unlock();
+    mark_newest();
 }
 
 /// Requires: the lock.

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -84,10 +85,18 @@ class Writer {
 
     void commit_group(std::vector<TaskPtr> group, SideWork side_work);
     void commit_apart(std::vector<TaskPtr>& group);
+    bool move_session(const std::string& birth);
     void commit_large(TaskPtr task);
     void drop_a_piece();
-    RowWriter::Result drop_rows(const Idle& idle, std::int64_t& rows, bool& more);
+    struct Dropped {
+        std::int64_t rows = 0;
+        std::int64_t answer_bytes = 0;
+        bool more = false;
+    };
+    RowWriter::Result drop_rows(const Idle& idle, Dropped& dropped);
+    void grow_log();
     void probe();
+    void mark_newest();
     void checkpoint();
 
     /// One transaction around the work. Rolled back, and told, where it fails.
@@ -122,8 +131,9 @@ class Writer {
 
     // Of the thread alone.
     std::unique_ptr<RowWriter> rows_;
-    bool broken_ = false;  ///< the connection has met an I/O error
-    bool wrote_ = false;   ///< something, in the transaction under way
+    bool broken_ = false;             ///< the connection has met an I/O error
+    bool wrote_ = false;              ///< something, in the transaction under way
+    std::set<std::string> unmarked_;  ///< births that have versions which `used` does not know of
     std::int64_t next_answer_;
     std::uint64_t answer_bytes_;
     Clock::time_point next_probe_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the writer commits, and what it does where that fails.
 #include <algorithm>
-#include <limits>
 #include <new>
 #include <string_view>
 #include <utility>
@@ -14,26 +13,7 @@ namespace tinsmith::server::store {
 
 namespace {
 
-constexpr std::int64_t kEntriesAPiece = 500;
-constexpr std::int64_t kPartsAPiece = 2;
-constexpr std::int64_t kAnswersAPiece = 100;
-
 using Result = RowWriter::Result;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-std::int64_t unix_now() {
-    return std::chrono::duration_cast<std::chrono::seconds>(
-               std::chrono::system_clock::now().time_since_epoch())
-        .count();
-}
-
-/// Whether the rows are to blame, those of one session perhaps, and not the disk.
-bool is_of_rows(const DatabaseFault& fault) {
-    return fault.kind == DatabaseFault::Kind::Corrupt || fault.kind == DatabaseFault::Kind::Taken;
-}
 
 std::size_t bytes_of(std::span<const std::unique_ptr<Task>> tasks) {
     std::size_t bytes = 0;
@@ -93,11 +73,11 @@ Result Writer::transact(std::size_t entries, std::size_t bytes,
         }
     }
     if (!fault) {
-        if (wrote_) pulse_.note_commit(seconds_since(start), entries, bytes);
+        if (wrote_) pulse_.note_commit(Clock::now() - start, entries, bytes);
         return fault;
     }
     rows_->roll_back();
-    if (is_of_rows(*fault)) return fault;
+    if (fault->is_of_rows()) return fault;
     pulse_.note_failure(told(*fault).text);
     next_probe_ = Clock::now() + options_.probe_every;
     if (fault->kind == DatabaseFault::Kind::Io) {
@@ -109,11 +89,11 @@ Result Writer::transact(std::size_t entries, std::size_t bytes,
 
 void Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
     Result fault = commit_tasks(group, &side_work);
-    if (fault && is_of_rows(*fault)) {
+    if (fault && fault->is_of_rows()) {
         commit_apart(group);
         fault = commit_tasks({}, &side_work);
         // Nobody waits for these, and the table that takes no answers would hold up all commits.
-        if (fault && is_of_rows(*fault)) {
+        if (fault && fault->is_of_rows()) {
             log_event(LogLevel::Warning, "journal_failed",
                       "kept answers are lost, " + told(*fault).text);
             side_work = {};
@@ -138,16 +118,19 @@ void Writer::commit_apart(std::vector<TaskPtr>& group) {
     std::stable_sort(group.begin(), group.end(),
                      [](const TaskPtr& a, const TaskPtr& b) { return a->birth < b->birth; });
     for (auto first = group.begin(); first != group.end();) {
-        const auto last = std::find_if(first, group.end(), [first](const TaskPtr& task) {
-            return task->birth != (*first)->birth;
-        });
+        const std::string& birth = (*first)->birth;
+        const auto last = std::find_if(
+            first, group.end(), [&birth](const TaskPtr& task) { return task->birth != birth; });
         const std::span<const TaskPtr> tasks(first, last);
-        if (const Result fault = commit_tasks(tasks, nullptr)) {
+        Result fault = commit_tasks(tasks, nullptr);
+        if (fault && fault->is_of_rows() && move_session(birth))
+            fault = commit_tasks(tasks, nullptr);
+        if (fault) {
             JournalFault words = told(*fault);
-            if (is_of_rows(*fault)) {
+            if (fault->is_of_rows()) {
                 words.kind = JournalFault::Kind::Damaged;
-                words.text = place_of("the entries", (*first)->birth) + ": " + words.text;
-                catalog_.set_damage((*first)->birth, words.text);
+                words.text = place_of("the entries", birth) + ": " + words.text;
+                catalog_.set_damage(birth, words.text);
                 log_event(LogLevel::Error, "session_damaged", words.text);
             }
             for (const TaskPtr& task : tasks) {
@@ -158,12 +141,48 @@ void Writer::commit_apart(std::vector<TaskPtr>& group) {
     }
 }
 
+/// To a place of its own behind all others, if each of its rows can be read. An entry that fills a
+/// page is laid out anew with the pages beside it, and one of those may be a neighbour's and
+/// damaged: that must not stop this session.
+bool Writer::move_session(const std::string& birth) {
+    const auto known = catalog_.find(birth);
+    if (!known) return false;
+    const std::int64_t number = catalog_.new_session();
+    bool is_whole = false;
+    const Result fault = transact(0, 0, [&]() -> Result {
+        const auto read = read_rows(rows_->database(), known->number, birth, known->newest);
+        const auto* rows = std::get_if<SessionRows>(&read);
+        if (rows == nullptr) return std::nullopt;
+        is_whole = true;
+        wrote_ = true;
+        const auto used = RowReader(rows_->database()).used(known->number);
+        const std::int64_t time = used ? used->time : rows->facts.used;
+        if (auto refused = rows_->set_used(number, {time, known->newest})) return refused;
+        if (auto refused = rows_->remove_session(known->number)) return refused;
+        if (auto refused = rows_->add_session(number, rows->facts)) return refused;
+        if (auto refused = rows_->set_snapshot(number, birth, rows->snapshot)) return refused;
+        for (const JournalEntry& entry : rows->tail) {
+            if (auto refused = rows_->add_entry(number, entry, sum_of(entry))) return refused;
+        }
+        return std::nullopt;
+    });
+    if (fault || !is_whole) return false;
+    catalog_.set_number(birth, number);
+    add_idle({Idle::What::Entries,
+              {entry_key(known->number, 0), entry_key(known->number, kLastVersion)},
+              0});
+    log_event(LogLevel::Warning, "session_damaged",
+              "rows beside those of session " + birth +
+                  " are damaged; it was moved away from them, whole");
+    return true;
+}
+
 void Writer::commit_large(TaskPtr task) {
     const std::span<const TaskPtr> tasks(&task, 1);
     const Result fault = commit_tasks(tasks, nullptr);
     if (fault && !task->refusal) {
         task->refusal = told(*fault);
-        if (is_of_rows(*fault)) task->refusal->kind = JournalFault::Kind::Damaged;
+        if (fault->is_of_rows()) task->refusal->kind = JournalFault::Kind::Damaged;
     }
     task->done.set_value(std::move(task->refusal));
 }
@@ -222,8 +241,8 @@ Result Writer::do_entry(Task& task, const AddEntry& add,
 }
 
 Result Writer::do_publish(Task& task, const Publish& publish) {
+    const auto known = catalog_.find(task.birth);
     if (!publish.made) {
-        const auto known = catalog_.find(task.birth);
         const std::uint64_t version = publish.snapshot.head.version;
         if (!known) {
             task.refusal = gone(task.birth);
@@ -241,9 +260,11 @@ Result Writer::do_publish(Task& task, const Publish& publish) {
     if (auto fault = rows_->add_part(part.key, part.bytes, part.sum)) return fault;
     if (publish.made) {
         if (auto fault = rows_->add_session(publish.number, *publish.made)) return fault;
-        if (auto fault = rows_->set_used(publish.number, publish.made->used)) return fault;
+        const UsedRow used{publish.made->used, publish.snapshot.head.version};
+        if (auto fault = rows_->set_used(publish.number, used)) return fault;
     }
-    return rows_->set_snapshot(publish.number, task.birth, publish.snapshot);
+    const std::int64_t number = publish.made ? publish.number : known->number;
+    return rows_->set_snapshot(number, task.birth, publish.snapshot);
 }
 
 Result Writer::do_remove(Task& task) {
@@ -261,7 +282,7 @@ Result Writer::do_side_work(const SideWork& side_work) {
         const auto known = catalog_.find(birth);
         if (!known) continue;
         wrote_ = true;
-        if (auto fault = rows_->set_used(known->number, time)) return fault;
+        if (auto fault = rows_->set_used(known->number, {time, known->newest})) return fault;
     }
     std::int64_t key = next_answer_;
     for (const KeptAnswerRow& answer : side_work.answers) {
@@ -285,6 +306,7 @@ void Writer::count_answers(const SideWork& side_work) {
 void Writer::enter_into_catalog(const Task& task) {
     if (const auto* add = std::get_if<AddEntry>(&task.what)) {
         catalog_.set_newest(task.birth, add->entry.version);
+        unmarked_.insert(task.birth);
         return;
     }
     if (std::holds_alternative<AddPart>(task.what)) return;
@@ -312,76 +334,6 @@ void Writer::enter_into_catalog(const Task& task) {
               {entry_key(known->number, 0), entry_key(known->number, kLastVersion)},
               0});
     add_idle({Idle::What::Parts, parts_of(known->snapshot), 0});
-}
-
-void Writer::drop_a_piece() {
-    Idle idle;
-    {
-        const std::lock_guard lock(mutex_);
-        if (idle_.empty()) return;
-        idle = idle_.front();
-    }
-    std::int64_t rows = 0;
-    bool more = false;
-    const Result fault = transact(0, 0, [&] { return drop_rows(idle, rows, more); });
-    pulse_.note_swept(fault ? 0 : static_cast<std::uint64_t>(rows));
-    if (fault && !is_of_rows(*fault)) return;  // again when the disk is well
-    if (fault)
-        log_event(LogLevel::Warning, "journal_failed",
-                  "rows that count no more stay, " + told(*fault).text);
-    if (!fault && more) return;
-    const std::lock_guard lock(mutex_);
-    idle_.pop_front();
-}
-
-Result Writer::drop_rows(const Idle& idle, std::int64_t& rows, bool& more) {
-    Result fault;
-    std::int64_t freed = 0;
-    switch (idle.what) {
-        case Idle::What::Entries:
-            fault = rows_->drop_entries(idle.keys, kEntriesAPiece, rows);
-            more = rows == kEntriesAPiece;
-            break;
-        case Idle::What::Parts:
-            fault = rows_->drop_parts(idle.keys, kPartsAPiece, rows);
-            more = rows == kPartsAPiece;
-            break;
-        case Idle::What::OldAnswers:
-            fault = rows_->drop_answers(kAnswersAPiece, idle.older_than, rows, freed);
-            more = rows == kAnswersAPiece;
-            break;
-        case Idle::What::SurplusAnswers:
-            fault = rows_->drop_answers(kAnswersAPiece, std::numeric_limits<std::int64_t>::max(),
-                                        rows, freed);
-            more = rows > 0 &&
-                   answer_bytes_ > options_.stored_answer_bytes + static_cast<std::uint64_t>(freed);
-            break;
-    }
-    wrote_ = rows > 0;
-    answer_bytes_ -= std::min(answer_bytes_, static_cast<std::uint64_t>(freed));
-    return fault;
-}
-
-/// A small durable write: the disk takes commits again, or it does not.
-void Writer::probe() {
-    transact(0, 0, [this]() -> Result {
-        wrote_ = true;
-        return rows_->probe(unix_now());
-    });
-}
-
-/// Moves the log into the file once it is long: after those who waited for a commit were woken, and
-/// not within one.
-void Writer::checkpoint() {
-    const bool again = pulse_.checkpoint_is_failing() && Clock::now() >= next_probe_;
-    if (broken_ || (rows_->pages_to_move() < options_.log_pages && !again)) return;
-    const auto start = Clock::now();
-    const Result fault = rows_->checkpoint();
-    if (!fault) return pulse_.note_checkpoint(seconds_since(start));
-    pulse_.note_checkpoint_failure(told(*fault).text);
-    next_probe_ = Clock::now() + options_.probe_every;
-    broken_ = fault->kind == DatabaseFault::Kind::Io;
-    if (broken_) open_anew();
 }
 
 }  // namespace tinsmith::server::store

@@ -219,6 +219,24 @@ TEST_F(DiskFaults, LeaveTheOldSnapshotWhereTheNewOneFails) {
     }
 }
 
+TEST_F(DiskFaults, PartsOfASnapshotThatWasNeverFinishedAreDropped) {
+    auto journal = open();
+    make(*journal, "birth", "id", 0);
+    disk_.cut_after_syncs(20);
+    const std::string mesh(200'000, 'm');
+    ASSERT_TRUE(journal->write_snapshot("birth", head(0), mesh));
+    journal.reset();
+    disk_.restore(std::nullopt);
+    journal = open();
+    ASSERT_TRUE(comes_true([&] { return journal->figures().swept_rows >= 15; }));
+    EXPECT_EQ(read(*journal, "birth").bytes, "mesh");
+    ASSERT_FALSE(journal->write_snapshot("birth", head(0), std::string(60'000, 'm')));
+    EXPECT_EQ(read(*journal, "birth").bytes.size(), 60'000U);
+    journal = reopen(std::move(journal));
+    EXPECT_LT(journal->figures().file_bytes, 150'000U) << "their room is used again";
+    EXPECT_EQ(read(*journal, "birth").bytes.size(), 60'000U);
+}
+
 TEST_F(DiskFaults, WhileTheLogIsMovedIsTold) {
     options_.log_pages = 20;
     auto journal = open();

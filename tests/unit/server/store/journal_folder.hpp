@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +25,7 @@ class JournalFolder : public testing::Test {
         set_log_level(LogLevel::Off);
         folder_ = std::filesystem::temp_directory_path() / ("tinsmith-journal-" + random_hex(8));
         options_.folder = folder_ / "data";
+        options_.grow_log = false;
         std::filesystem::create_directories(folder_);
     }
     void TearDown() override {
