@@ -41,7 +41,7 @@ std::optional<JournalFault> Catalog::why_not(const std::string& birth) const {
     return JournalFault{JournalFault::Kind::Damaged, damage};
 }
 
-std::optional<JournalFault> Catalog::reserve(const SessionFacts& session) {
+std::optional<JournalFault> Catalog::reserve(const StoredFacts& session) {
     const auto conflict = [](const std::string& what) {
         return JournalFault{JournalFault::Kind::Conflict, what};
     };
@@ -55,7 +55,7 @@ std::optional<JournalFault> Catalog::reserve(const SessionFacts& session) {
     return std::nullopt;
 }
 
-void Catalog::release(const SessionFacts& session) {
+void Catalog::release(const StoredFacts& session) {
     const std::lock_guard lock(mutex_);
     ids_.erase(session.id);
     births_being_made_.erase(session.birth);
@@ -71,7 +71,7 @@ std::int64_t Catalog::new_snapshot() {
     return next_snapshot_++;
 }
 
-void Catalog::add(const SessionFacts& session, Known known) {
+void Catalog::add(const StoredFacts& session, Known known) {
     const std::lock_guard lock(mutex_);
     births_being_made_.erase(session.birth);
     sessions_.try_emplace(session.birth, std::move(known));

@@ -34,12 +34,12 @@ class Catalog {
     std::optional<JournalFault> why_not(const std::string& birth) const;
 
     /// Keeps the id and the birth for a session that is being made. Ends with `add` or `release`.
-    std::optional<JournalFault> reserve(const SessionFacts& session);
-    void release(const SessionFacts& session);
+    std::optional<JournalFault> reserve(const StoredFacts& session);
+    void release(const StoredFacts& session);
     std::int64_t new_session();
     std::int64_t new_snapshot();
 
-    void add(const SessionFacts& session, Known known);
+    void add(const StoredFacts& session, Known known);
     void remove(const std::string& birth);
     void set_number(const std::string& birth, std::int64_t number);
     void set_newest(const std::string& birth, std::uint64_t version);

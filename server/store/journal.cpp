@@ -91,7 +91,7 @@ class Journal::Implementation {
           writer_(options_, std::move(database), std::move(inventory), catalog_, pulse_) {}
 
     Committed append(JournalEntry entry);
-    Committed create(const SessionFacts& session, const SnapshotHead& head, std::string_view bytes);
+    Committed create(const StoredFacts& session, const SnapshotHead& head, std::string_view bytes);
     Committed write_snapshot(const std::string& birth, const SnapshotHead& head,
                              std::string_view bytes);
     Committed remove(const std::string& birth);
@@ -129,7 +129,7 @@ Committed Journal::Implementation::append(JournalEntry entry) {
     return writer_.submit(std::move(task)).get();
 }
 
-Committed Journal::Implementation::create(const SessionFacts& session, const SnapshotHead& head,
+Committed Journal::Implementation::create(const StoredFacts& session, const SnapshotHead& head,
                                           std::string_view bytes) {
     if (head.version > store::kLastVersion)
         return fault(JournalFault::Kind::Conflict, "the version is beyond 2^36");
@@ -300,7 +300,7 @@ Committed Journal::append(JournalEntry entry) {
     return implementation_->append(std::move(entry));
 }
 
-Committed Journal::create(const SessionFacts& session, const SnapshotHead& head,
+Committed Journal::create(const StoredFacts& session, const SnapshotHead& head,
                           std::string_view bytes) {
     return implementation_->create(session, head, bytes);
 }

@@ -97,7 +97,7 @@ class Journal {
 
     /// A new session, as `bytes` make it at `head.version`. Conflict where the id or the birth is
     /// taken, or just being made.
-    Committed create(const SessionFacts& session, const SnapshotHead& head, std::string_view bytes);
+    Committed create(const StoredFacts& session, const SnapshotHead& head, std::string_view bytes);
 
     /// From then on `read` starts here; entries up to that version count no more. Requires: a
     /// version from that of the last snapshot to the newest. Commits of others go between its

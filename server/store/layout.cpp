@@ -147,7 +147,7 @@ std::int64_t sum_of_part(std::string_view birth, std::int64_t key, std::string_v
     return sum_of_row("part", {unsigned_of(key)}, {birth, bytes});
 }
 
-std::int64_t sum_of(std::int64_t number, const SessionFacts& session) {
+std::int64_t sum_of(std::int64_t number, const StoredFacts& session) {
     return sum_of_row("session", {unsigned_of(number), unsigned_of(session.used)},
                       {session.birth, session.id, session.facts, session.key, session.print});
 }

@@ -62,7 +62,7 @@ struct UsedRow {
 /// flipped bit nor a row in another's place goes unseen.
 std::int64_t sum_of(const JournalEntry& entry);
 std::int64_t sum_of_part(std::string_view birth, std::int64_t key, std::string_view bytes);
-std::int64_t sum_of(std::int64_t number, const SessionFacts& session);
+std::int64_t sum_of(std::int64_t number, const StoredFacts& session);
 std::int64_t sum_of(std::int64_t number, std::string_view birth, const SnapshotRow& snapshot);
 std::int64_t sum_of(std::int64_t number, const UsedRow& used);
 std::int64_t sum_of(const KeptAnswerRow& answer);

@@ -43,7 +43,7 @@ std::variant<Inventory, JournalFault> take_inventory(Database& database);
 /// Of a session: where its snapshot is, and the entries since then, up to version `newest`. What
 /// stands behind the last of them is not looked at: it may be another's, and damaged.
 struct SessionRows {
-    SessionFacts facts;
+    StoredFacts facts;
     SnapshotRow snapshot;
     std::vector<JournalEntry> tail;
 };

@@ -46,7 +46,7 @@ RowReader::RowReader(const Database& database)
       newest_(database.prepare((std::string(kEntryColumns) + " ORDER BY at DESC LIMIT 1").c_str())),
       entries_(database.prepare((std::string(kEntryColumns) + " ORDER BY at").c_str())) {}
 
-std::optional<JournalFault> RowReader::session(std::int64_t number, SessionFacts& out) {
+std::optional<JournalFault> RowReader::session(std::int64_t number, StoredFacts& out) {
     const std::string place = "row " + std::to_string(number) + " of table session";
     const Step step = session_.bind(1, number).step();
     if (step == Step::Failed) return fault_from(session_.fault(), place);

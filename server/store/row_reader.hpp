@@ -19,7 +19,7 @@ class RowReader {
     /// Requires: the database outlives it.
     explicit RowReader(const Database& database);
 
-    std::optional<JournalFault> session(std::int64_t number, SessionFacts& out);
+    std::optional<JournalFault> session(std::int64_t number, StoredFacts& out);
     std::optional<JournalFault> snapshot(std::int64_t number, const std::string& birth,
                                          SnapshotRow& out);
     /// Nothing where it is not what was written: the rest of the session does without.

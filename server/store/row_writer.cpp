@@ -67,7 +67,7 @@ RowWriter::Result RowWriter::add_part(std::int64_t key, std::string_view bytes, 
     return part_.bind(1, key).bind(2, bytes).bind(3, sum).run();
 }
 
-RowWriter::Result RowWriter::add_session(std::int64_t number, const SessionFacts& session) {
+RowWriter::Result RowWriter::add_session(std::int64_t number, const StoredFacts& session) {
     return session_.bind(1, number)
         .bind(2, session.birth)
         .bind(3, session.id)

@@ -29,7 +29,7 @@ class RowWriter {
 
     Result add_entry(std::int64_t number, const JournalEntry& entry, std::int64_t sum);
     Result add_part(std::int64_t key, std::string_view bytes, std::int64_t sum);
-    Result add_session(std::int64_t number, const SessionFacts& session);
+    Result add_session(std::int64_t number, const StoredFacts& session);
     Result set_snapshot(std::int64_t number, std::string_view birth, const SnapshotRow& snapshot);
     Result set_used(std::int64_t number, const UsedRow& used);
     Result remove_session(std::int64_t number);

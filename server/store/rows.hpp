@@ -52,7 +52,7 @@ struct SnapshotHead {
 };
 
 /// What is fixed when a session is made.
-struct SessionFacts {
+struct StoredFacts {
     std::string birth;  ///< random and unique; not empty
     std::string id;
     std::string facts;      ///< bytes
@@ -60,12 +60,12 @@ struct SessionFacts {
     std::string print;      ///< of that request
     std::int64_t used = 0;  ///< Unix seconds; `touch` moves it
 
-    friend bool operator==(const SessionFacts&, const SessionFacts&) = default;
+    friend bool operator==(const StoredFacts&, const StoredFacts&) = default;
 };
 
 /// A session as listings see it.
 struct SessionRow {
-    SessionFacts session;
+    StoredFacts session;
     std::uint64_t version = 0;           ///< the newest
     std::string view;                    ///< at that version
     std::uint64_t snapshot_version = 0;  ///< where `read` starts

@@ -28,8 +28,8 @@ struct AddPart {
 
 /// The last part of a snapshot, and with it the snapshot counts.
 struct Publish {
-    std::optional<SessionFacts> made;  ///< of a new session
-    std::int64_t number = 0;           ///< of that one
+    std::optional<StoredFacts> made;  ///< of a new session
+    std::int64_t number = 0;          ///< of that one
     SnapshotRow snapshot;
     AddPart last_part;
 };

@@ -55,7 +55,7 @@ class JournalFolder : public testing::Test {
         return open();
     }
 
-    static SessionFacts facts(const std::string& birth, const std::string& id) {
+    static StoredFacts facts(const std::string& birth, const std::string& id) {
         return {birth, id, "facts of " + birth, "key of " + birth, "print of " + birth, 1000};
     }
     static SnapshotHead head(std::uint64_t version, std::uint64_t bytes = 0) {

@@ -56,7 +56,7 @@ TEST_F(JournalTest, GivesBackWhatWasWritten) {
 TEST_F(JournalTest, TakesBytesOfEverySort) {
     auto journal = open();
     const std::string odd("\0'\"\xff;--\n", 8);
-    const SessionFacts session{odd, odd, "", "", odd, -5};
+    const StoredFacts session{odd, odd, "", "", odd, -5};
     ASSERT_FALSE(journal->create(session, {0, 0, 0, odd, "", 0}, ""));
     const JournalEntry empty{odd, 1, 0xffffffff, "", "", "", "", ""};
     const JournalEntry large{odd, 2, 0, std::string(300'000, '\0'), odd, odd, odd, odd};
