@@ -11,8 +11,8 @@ export type Topic = 'sessions' | 'session' | 'mesh' | 'regions' | 'history' | 'd
 
 export interface Mark { x: number; y: number; text: string }
 export interface Told { title: string; detail: string; errors: Fault[]; conflict: boolean; retry: (() => void) | null }
-/** What an edit took, from the click to the pixels. */
-export interface Cost { bytes: number; ms: number }
+/** What an edit took, from the click to the pixels; `answer`: until the server's answer was there. */
+export interface Cost { bytes: number; ms: number; answer: number }
 export interface Edited { version: number; cost: Cost; history: string | null }
 
 export class App {
@@ -163,8 +163,9 @@ export class App {
     this.note(full);
     const response = await send(full);
     const delta = readDelta(await response.arrayBuffer());
+    const answer = performance.now() - begin;
     await this.take(delta, response);
-    const cost = {bytes: delta.bytes, ms: performance.now() - begin};
+    const cost = {bytes: delta.bytes, ms: performance.now() - begin, answer};
     await this.refresh();
     const link = /<([^>]+)>;\s*rel="describedby"/.exec(response.headers.get('Link') ?? '');
     return {version: delta.to, cost, history: link ? link[1] : `${this.path('/history/')}${delta.to}`};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {App} from './app';
 import {Compare} from './compare';
+import {CursorView} from './cursor_view';
 import {Draft} from './draft';
 import {buildLegend, buildLooks, buildReadout} from './furniture';
 import {Overlay} from './overlay';
@@ -68,7 +69,7 @@ buildTabs(app, [
   ['profile', 'Profile', buildProfile(app, draft, profile, view)],
   ['history', 'History', buildHistory(app, compare)],
 ]);
-view.follow(pointer);
+new CursorView(app, draft, pointer, stage);
 let hint = '';
 const showHint = () => {
   byId('hint').textContent = draft.drawing ? 'Click to set corners. Enter finishes, Backspace takes back, Escape cancels.' : hint;
@@ -104,4 +105,4 @@ void app.attempt(async () => {
   else { app.close(); app.openTab('terrain'); }
 });
 // For those who measure: `tinsmith.stage.frames`, and the mesh as it is.
-Object.assign(window, {tinsmith: {app, stage, view, draft}});
+Object.assign(window, {tinsmith: {app, stage, view, draft, pointer}});

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-import {Color, Group, type Object3D, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {Color, Group, Matrix4, type Object3D, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import {MapControls} from 'three/examples/jsm/controls/MapControls.js';
 
 /** Frames slower than this while the view moves are drawn with less. */
 const SLOW_MS = 60;
 const REST_MS = 180;
+/** What is drawn of a view that moves is chosen anew after so long. */
+const REFRESH_MS = 400;
 
 /** Whether drawing is not the processor's work, for which smooth edges cost too much. */
 function hasGraphicsCard(): boolean {
@@ -26,26 +28,26 @@ export class Stage {
   readonly controls: MapControls;
   /** Called before each frame, for what is HTML above the canvas. */
   readonly onFrame: (() => void)[] = [];
-  /** Told whether less should be drawn because the view moves and frames are slow. */
-  onEconomy: (economy: boolean) => void = () => {};
-  /** Called when the view has come to rest. */
-  onRest: () => void = () => {};
+  /** Called when the view has come to rest, is another, or moves so slowly that less should be drawn. */
+  onView: () => void = () => {};
   /** The ground as it was, on the left of the part `swipe`; null: no comparison. */
   compare: {before: Object3D; now: Object3D[]; part: number} | null = null;
   frames = 0;
   private pending = false;
   private moving = false;
   private slow = 0;
-  /** Of the terrain on the screen. */
-  wasSlow = false;
+  private readonly hasCard = hasGraphicsCard();
+  /** Frames of this terrain have been slow, or will be. */
+  wasSlow = !this.hasCard;
   private lastFrame = 0;
   private lastTook = 0;
+  private refreshed = 0;
   private restTimer = 0;
   private economy = false;
   private readonly size = new Vector2();
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({canvas, antialias: hasGraphicsCard(), powerPreference: 'high-performance'});
+    this.renderer = new WebGLRenderer({canvas, antialias: this.hasCard, powerPreference: 'high-performance'});
     this.scene.background = new Color('#e9edea');
     this.scene.add(this.world);
     this.camera.up.set(0, 0, 1);
@@ -65,7 +67,25 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    this.onView();
     this.invalidate();
+  }
+
+  /** Another terrain: what was slow may be fast. */
+  startAnew() {
+    this.wasSlow = !this.hasCard;
+  }
+
+  /** Whether the view moves and less is drawn. */
+  get isEconomical() {
+    return this.economy;
+  }
+
+  /** From the world's own axes to the view's. */
+  get toClip(): Matrix4 {
+    this.camera.updateMatrixWorld();
+    this.world.updateWorldMatrix(true, false);
+    return new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).multiply(this.world.matrixWorld);
   }
 
   private pixelRatio() {
@@ -85,7 +105,7 @@ export class Stage {
     this.restTimer = window.setTimeout(() => {
       this.moving = false;
       this.setEconomy(false);
-      this.onRest();
+      this.onView();
     }, wait);
     this.invalidate();
   }
@@ -93,9 +113,14 @@ export class Stage {
   private setEconomy(economy: boolean) {
     if (economy === this.economy) return;
     this.economy = economy;
-    this.onEconomy(economy);
+    if (economy) this.refresh();
     this.renderer.setPixelRatio(this.pixelRatio());
     this.invalidate();
+  }
+
+  private refresh() {
+    this.refreshed = performance.now();
+    this.onView();
   }
 
   /** Draws at the next frame. */
@@ -136,6 +161,7 @@ export class Stage {
       }
     }
     this.lastFrame = now;
+    if (this.economy && performance.now() - this.refreshed > REFRESH_MS) this.refresh();
     ++this.frames;
     const far = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(far / 100, 0.01);
@@ -187,6 +213,7 @@ export class Stage {
     this.controls.maxDistance = distance * 6;
     this.controls.minDistance = this.reach * 1e-4;
     this.controls.update();
+    this.onView();
     this.invalidate();
   }
 
