@@ -20,7 +20,6 @@ export class Compare {
   group: Group | null = null;
   readonly material;
   private readonly loader = new GLTFLoader();
-  private index: GroundIndex | null = null;
 
   constructor(private readonly app: App, ramp: CanvasTexture) {
     this.material = groundMaterial(ramp);
@@ -32,18 +31,25 @@ export class Compare {
   async load(version: number | null) {
     this.version = version;
     this.group = null;
-    this.index = null;
     if (version !== null) {
-      const call: Call = {method: 'GET', path: this.app.path('/mesh.glb'), query: {version: String(version), up: 'z', tolerance: '0.001', constraints: 'false', normals: 'false'}};
-      this.app.note(call);
-      const answer = await send(call);
-      const gltf = await this.loader.parseAsync(await answer.arrayBuffer(), '');
+      const group = await this.fetched(version);
       if (this.version !== version) return;
-      this.group = this.taken(gltf.scene);
+      this.group = group;
     } else {
       this.swipe = false;
     }
     this.app.tell('compare');
+  }
+
+  /** The mesh of a version, or its triangles that meet a box. */
+  private async fetched(version: number, box?: number[]): Promise<Group> {
+    const call: Call = {
+      method: 'GET', path: this.app.path('/mesh.glb'), out: 'then.glb',
+      query: {version: String(version), up: 'z', tolerance: '0.001', constraints: 'false', normals: 'false', ...(box && {bbox: box.join(',')})},
+    };
+    this.app.note(call);
+    const answer = await send(call);
+    return this.taken((await this.loader.parseAsync(await answer.arrayBuffer(), '')).scene);
   }
 
   /** In the axes of the session, relative to the origin of the mesh on the screen. */
@@ -79,12 +85,12 @@ export class Compare {
     }
   }
 
-  /** To ask it for elevations. */
-  async ground(): Promise<GroundIndex | null> {
-    if (this.index || !this.group) return this.index;
+  /** The ground of a version in a box, to ask it for elevations. */
+  async groundOf(version: number, box: number[]): Promise<GroundIndex> {
+    const group = this.version === version && this.group ? this.group : await this.fetched(version, box);
     const {origin} = this.app.mesh;
     // A mesh that is fine over a wide ground comes in several parts.
-    const parts = this.group.children.filter((child): child is Drawn => child instanceof Drawn);
+    const parts = group.children.filter((child): child is Drawn => child instanceof Drawn);
     const mesh = new Mesh();
     mesh.positions = new Float64Array(parts.reduce((sum, part) => sum + 3 * part.geometry.getAttribute('position').count, 0));
     mesh.corners = new Uint32Array(parts.reduce((sum, part) => sum + part.geometry.getIndex()!.count, 0));
@@ -100,7 +106,6 @@ export class Compare {
       mesh.vertexCount += from.count;
       mesh.triangleCount += index.count / 3;
     }
-    this.index = new GroundIndex(mesh);
-    return this.index;
+    return new GroundIndex(mesh);
   }
 }

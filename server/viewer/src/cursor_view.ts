@@ -26,6 +26,8 @@ export class CursorView {
 
   private drape() {
     const {draft, app: {ground}} = this;
+    // The line of a section that is there is drawn with it.
+    if (draft.kind === 'Profile' && !draft.drawing) { this.draped = []; return; }
     const line = draft.kind === 'Polygon' && !draft.drawing && draft.points.length > 2 ? [...draft.points, draft.points[0]] : draft.points;
     this.draped = line.slice(1).flatMap((point, i) => ground.drape(line[i], point, line.length > 200 ? 8 : PARTS));
   }

@@ -191,26 +191,37 @@ export class Stage {
 
   private reach = 1000;
 
-  /** Looks at a box of the scene from the south, from above. `steep`: straight down. */
-  fit(center: Vector3, width: number, height: number, steep = false) {
+  /** Looks at a box of the scene from the south, from above, so that it fills the frame. `steep`: straight down. */
+  fit(center: Vector3, [width, height, depth]: [number, number, number], steep = false) {
     this.reach = Math.max(width, height, 1);
-    const across = Math.max((width / this.camera.aspect) * 1.05, height * (steep ? 1 : 1.02), 1e-3);
-    const distance = (across / 2 / Math.tan((this.camera.fov * Math.PI) / 360)) * 1.1;
-    this.controls.target.copy(center);
+    const direction = (steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.08, -0.62, 0.78)).normalize();
+    const corners = [-0.5, 0.5].flatMap((x) => [-0.5, 0.5].flatMap((y) => [-0.5, 0.5].map((z) => new Vector3(x * width, y * height, z * depth).add(center))));
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const target = center.clone();
+    let back = this.reach / half;
     this.camera.near = this.reach / 1000;
     this.camera.far = this.reach * 100;
     this.camera.updateProjectionMatrix();
-    const direction = steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.08, -0.62, 0.78);
-    direction.normalize();
-    // Back until the corners of the box are within the frame, below what stands on its upper margin.
-    for (let back = distance * 0.7, tries = 0; tries < 30; ++tries, back *= 1.05) {
-      this.camera.position.copy(center).addScaledVector(direction, back);
-      this.camera.lookAt(center);
+    // Nearer and aside, until the corners reach from margin to margin; what stands above has its own.
+    for (let round = 0; round < 12; ++round) {
+      this.camera.position.copy(target).addScaledVector(direction, back);
+      this.camera.lookAt(target);
       this.camera.updateMatrixWorld();
-      const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => new Vector3(x * width, y * height, 0).multiplyScalar(0.5).add(center).project(this.camera)));
-      if (corners.every((at) => Math.abs(at.x) < 0.96 && at.y > -0.97 && at.y < 0.86)) break;
+      const seen = corners.map((corner) => corner.clone().project(this.camera));
+      const [left, right] = [Math.min(...seen.map(({x}) => x)), Math.max(...seen.map(({x}) => x))];
+      const [low, high] = [Math.min(...seen.map(({y}) => y)), Math.max(...seen.map(({y}) => y))];
+      const [lowest, highest] = [-0.93, 0.8];
+      const side = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), up = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+      target.addScaledVector(side, ((left + right) / 2) * half * this.camera.aspect * back);
+      target.addScaledVector(up, ((low + high) / 2 - (lowest + highest) / 2) * half * back);
+      back *= Math.max((right - left) / 1.88, (high - low) / (highest - lowest), 0.3);
     }
-    this.controls.maxDistance = distance * 6;
+    // Around a place of the ground, not one above or below it.
+    target.addScaledVector(direction, (center.z - target.z) / direction.z);
+    this.camera.position.copy(target).addScaledVector(direction, back);
+    this.camera.lookAt(target);
+    this.controls.target.copy(target);
+    this.controls.maxDistance = back * 5;
     this.controls.minDistance = this.reach * 1e-4;
     this.controls.update();
     this.onView();

@@ -74,6 +74,12 @@ export function shortUnit(unit: string): string {
   return unit.startsWith('met') ? 'm' : /foot|feet/.test(unit) ? 'ft' : unit;
 }
 
+/** A millimetre in the session's unit, to five digits. */
+export function millimetre(unit: string): string {
+  const metres = unit === 'foot' ? 0.3048 : unit === 'US survey foot' ? 1200 / 3937 : 1;
+  return String(Number((0.001 / metres).toPrecision(5)));
+}
+
 export function areaText(area: number, unit: string): string {
   const u = shortUnit(unit);
   return u === 'm' && area >= 1e5 ? `${number(area / 1e6, 3)} km²` : `${brief(area)} ${u}²`;

@@ -6,6 +6,7 @@ import type {Compare} from './compare';
 import type {Draft} from './draft';
 import {Detail} from './detail';
 import {Lines, segmentsOf} from './lines';
+import type {Mesh} from './mesh';
 import type {Profile} from './profile';
 import {linesOf, RegionsView} from './regions_view';
 import {rampTexture} from './shaders';
@@ -16,7 +17,7 @@ const PARTS = 40;
 /** Fewer triangles than these are always drawn all. */
 const MANY = 150_000;
 /** Cells, in pixels, and how much of what lies around the view is drawn along. */
-const RESTING = [1.8, 1.02], MOVING = [5, 1.5];
+const RESTING = [1.5, 1.02], MOVING = [5, 1.5];
 
 export class View {
   readonly ramp = rampTexture();
@@ -32,6 +33,8 @@ export class View {
   private readonly section = new Lines({colour: '#5b21b6', width: 2.6, above: true});
   private isFresh = true;
   private readonly spare = new Detail();
+  private looked = 0;
+  private lookedAt: Mesh | null = null;
   /** In use where drawing all takes too long. */
   private detail: Detail | null = null;
 
@@ -82,6 +85,10 @@ export class View {
     if (stage.wasSlow && mesh.triangleCount > MANY) {
       const {clientWidth, clientHeight} = stage.canvas;
       const [cell, margin] = stage.isEconomical ? MOVING : RESTING;
+      if (this.looked !== mesh.version || this.lookedAt !== mesh) {
+        [this.looked, this.lookedAt] = [mesh.version, mesh];
+        this.spare.look(mesh.corners, mesh.triangleCount, mesh.vertexCount);
+      }
       this.spare.measure(mesh.local, mesh.vertexCount, stage.toClip, clientWidth, clientHeight, cell, margin);
       this.detail = this.spare;
     }
@@ -92,14 +99,14 @@ export class View {
   /** What comes from a file; what is drawn by hand lies above the canvas. */
   private drawSketch() {
     const {draft, app} = this;
-    const lines = draft.imported ? linesOf(draft.imported.value) : [];
-    if (lines.length === 0 && !this.sketch.visible) return;
+    const lines = draft.imported && !draft.placed ? linesOf(draft.imported.value) : [];
+    if (lines.length === 0 && !draft.placed && !this.sketch.visible) return;
     const total = lines.reduce((all, line) => all + line.length, 0);
     const parts = total > 2000 ? 2 : total > 200 ? 8 : PARTS;
     const ends: number[] = [];
-    for (const line of lines)
-      for (let i = 1; i < line.length; ++i)
-        for (const value of segmentsOf(app.ground.drape(line[i - 1], line[i], parts), app.mesh.origin)) ends.push(value);
+    const add = (line: (number[] | null)[]) => { for (const value of segmentsOf(line, app.mesh.origin)) ends.push(value); };
+    for (const line of draft.placed ?? []) add(line);
+    for (const line of lines) for (let i = 1; i < line.length; ++i) add(app.ground.drape(line[i - 1], line[i], parts));
     this.sketch.set(ends);
     this.stage.invalidate();
   }
@@ -158,14 +165,14 @@ export class View {
     if (!b) return;
     const {origin} = this.app.mesh;
     const middle = new Vector3((b[0] + b[3]) / 2 - origin[0], (b[1] + b[4]) / 2 - origin[1], ((b[2] + b[5]) / 2 - origin[2]) * this.exaggeration);
-    this.stage.fit(middle, b[3] - b[0], b[4] - b[1], steep);
+    this.stage.fit(middle, [b[3] - b[0], b[4] - b[1], (b[5] - b[2]) * this.exaggeration], steep);
   }
 
   /** Brings a plan position into the middle, near enough to see `size` around it. */
   goTo(x: number, y: number, size: number) {
     const {origin} = this.app.mesh;
     const z = this.app.ground.at(x, y)?.z ?? origin[2];
-    this.stage.fit(new Vector3(x - origin[0], y - origin[1], (z - origin[2]) * this.exaggeration), size, size);
+    this.stage.fit(new Vector3(x - origin[0], y - origin[1], (z - origin[2]) * this.exaggeration), [size, size, 0]);
   }
 }
 

@@ -34,8 +34,10 @@ export function buildHistory(app: App, compare: Compare): HTMLElement {
         }, {class: 'small', 'aria-label': `Compare with version ${change.version}`, 'aria-pressed': String(isBefore)}),
         change.change !== 'created' && button('Report', () => {
           void app.attempt(async () => {
+            const call = {method: 'GET', path: app.path(`/history/${change.version}`)};
+            app.note(call);
             report.hidden = false;
-            report.textContent = JSON.stringify(await json({method: 'GET', path: app.path(`/history/${change.version}`)}), null, 1);
+            report.textContent = JSON.stringify(await json(call), null, 1);
           });
         }, {class: 'small', 'aria-label': `Report of version ${change.version}`})));
     }));

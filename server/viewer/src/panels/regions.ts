@@ -91,9 +91,13 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     edit.forget();
   };
   const box = h('div');
+  let shown = '';
   app.on(['selection'], () => {
     const region = app.regions.find((one) => one.polygon === app.selected);
-    if (!region) return;
+    const name = region ? `${app.session?.id} ${region.polygon}` : '';
+    // What was typed stays while the region does.
+    if (!region || name === shown) { shown = name; return; }
+    shown = name;
     // The mean of the corners is where the ground is; a level near it is what people try first.
     let sum = 0;
     for (const t of region.triangles) for (let k = 0; k < 3; ++k) sum += app.mesh.positions[3 * app.mesh.corners[3 * t + k] + 2];
