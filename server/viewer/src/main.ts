@@ -120,4 +120,4 @@ void app.attempt(async () => {
   else { app.close(); app.openTab('terrain'); }
 });
 // For those who measure: `tinsmith.stage.frames`, and the mesh as it is.
-Object.assign(window, {tinsmith: {app, stage, view, draft, pointer}});
+Object.assign(window, {tinsmith: {app, stage, view, draft, pointer, profile}});

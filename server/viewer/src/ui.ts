@@ -63,6 +63,7 @@ export function number(value: number, digits = 0): string {
 export function brief(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return '0';
+  if (!Number.isFinite(value)) return '–';
   if (size < 1e-3 || size >= 1e12) {
     const [digits, power] = value.toExponential(1).split('e');
     return `${digits}·10${[...power.replace('+', '')].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)])).join('')}`;

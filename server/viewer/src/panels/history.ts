@@ -24,7 +24,7 @@ export function buildHistory(app: App, compare: Compare): HTMLElement {
         h('div', {}, h('b', {}, `v${change.version}`), ` ${WORDS[change.change] ?? change.change}`,
           change.of ? ` v${change.of}` : '', change.polygons.length ? `: ${change.polygons.join(', ')}` : '', isNow && h('em', {}, 'now')),
         h('small', {}, `${number(change.triangles)} triangles`),
-        h('span', {class: 'buttons'}, !isNow && button(isBefore ? 'Compared' : 'Compare', () => {
+        h('span', {class: 'buttons'}, !isNow && button('Compare', () => {
           void app.attempt(async () => {
             await compare.load(change.version);
             compare.swipe = true;

@@ -35,7 +35,7 @@ export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElemen
     }));
     [...list.querySelectorAll('button')].forEach((element, i) => {
       const {id} = app.features[i].tinsmith;
-      element.append(swatch(id), titleOf(app, id));
+      element.append(swatch(id), h('span', {}, titleOf(app, id)));
     });
     const region = app.selected ? areas.get(app.selected) : undefined;
     chosen.hidden = !region;

@@ -3,7 +3,7 @@
 import type {Report} from '../api';
 import type {App} from '../app';
 import type {Draft} from '../draft';
-import {type AngleChange, BAR_DEGREES} from '../angles';
+import {type AngleChange, type Angles, BAR_DEGREES} from '../angles';
 import {brief, bytesText, figures, h, number, shortUnit, svg} from '../ui';
 
 const most = (report: Report, name: 'max_vertical_deviation' | 'max_plan_deviation' | 'max_elevation_change') =>
@@ -18,6 +18,8 @@ function angle(report: Report, when: 'before' | 'after' | 'p1_after'): string | 
 const milliseconds = (report: Report) => Object.values(report.time_ms).reduce((sum, value) => sum + value, 0);
 
 const [WIDTH, HEIGHT, BOTTOM] = [320, 112, 18];
+
+const told = (when: string, {count, least}: Angles) => `${when}: ${number(count)}${count ? `, least ${brief(least)}°` : ''}`;
 
 /** Smallest angles of the triangles that changed: as they were, and as they are, bar beside bar. */
 function histogram({before, after}: AngleChange): HTMLElement {
@@ -37,8 +39,8 @@ function histogram({before, after}: AngleChange): HTMLElement {
   });
   out.append(svg('line', {class: 'axis', x1: 0, x2: WIDTH, y1: HEIGHT - BOTTOM, y2: HEIGHT - BOTTOM}), svg('text', {x: WIDTH, y: HEIGHT - 5, 'text-anchor': 'end'}, '60°'));
   return h('figure', {class: 'plot angles'}, h('figcaption', {}, h('b', {}, 'Smallest angles of the triangles touched'),
-    h('span', {class: 'soft'}, h('i', {class: 'box was'}), `before: ${number(before.count)}, least ${brief(before.least)}°`),
-    h('span', {class: 'soft'}, h('i', {class: 'box is'}), `after: ${number(after.count)}, least ${brief(after.least)}°`)), out as unknown as HTMLElement);
+    h('span', {class: 'soft'}, h('i', {class: 'box was'}), told('before', before)),
+    h('span', {class: 'soft'}, h('i', {class: 'box is'}), told('after', after))), out as unknown as HTMLElement);
 }
 
 export function buildReport(app: App, draft: Draft): HTMLElement {
@@ -69,7 +71,7 @@ export function buildReport(app: App, draft: Draft): HTMLElement {
       row('Parts outside', (r) => number(r.polygons.reduce((all, p) => all + p.outside.length, 0))),
       row('Server, ms', (r) => number(milliseconds(r), 2)),
     ]));
-    if (measured?.angles) box.append(histogram(measured.angles));
+    if (measured?.angles?.after.count) box.append(histogram(measured.angles));
   });
   return box;
 }

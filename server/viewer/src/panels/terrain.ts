@@ -46,8 +46,8 @@ export function buildTerrain(app: App, upload: Upload, take: (file: File) => voi
     if (said.length) facts.append(h('ul', {class: 'notes', 'aria-label': 'Said of the file'}, ...said.map((text) => h('li', {}, text))));
   });
   app.on(['sessions', 'session'], () => {
-    list.replaceChildren(...app.sessions.map((s) => h('li', {}, button(s.name ? `${s.name} – ${s.id}` : s.id,
-      () => { void app.attempt(() => app.open(s.id)); }, {class: 'row', 'aria-current': s.id === app.session?.id ? 'true' : false}),
+    list.replaceChildren(...app.sessions.map((s) => h('li', {}, h('button', {type: 'button', class: 'row', title: s.id, 'aria-current': s.id === app.session?.id ? 'true' : false,
+      onclick: () => { void app.attempt(() => app.open(s.id)); }}, h('span', {}, s.name ? `${s.name} – ${s.id}` : s.id)),
       h('small', {}, `${number(s.triangles)} triangles`))));
   });
   return h('div', {}, h('div', {class: 'buttons'},
