@@ -8,11 +8,15 @@ const REST_MS = 180;
 /** What is drawn of a view that moves is chosen anew after so long. */
 const REFRESH_MS = 400;
 
-/** Whether drawing is not the processor's work, for which smooth edges cost too much. */
+/** Whether drawing is not the processor's work, for which smooth edges and a million triangles cost too much. */
 function hasGraphicsCard(): boolean {
   const context = document.createElement('canvas').getContext('webgl2', {failIfMajorPerformanceCaveat: true});
-  context?.getExtension('WEBGL_lose_context')?.loseContext();
-  return context !== null;
+  if (!context) return false;
+  // Browsers that are told to draw so do not call it a caveat.
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const renderer = String(context.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
 }
 
 /**
