@@ -6,8 +6,9 @@ import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {ask, project} from '../support/program.mjs';
-import {hills} from './browser.mjs';
+import {test} from 'node:test';
+import {ask, project, startServer} from '../support/program.mjs';
+import {Client, hills, openPage} from './browser.mjs';
 import {assertSameMesh, button, drawSquare, give, integrate, REFUSED, SQUARE, stand, viewTest} from './stand.mjs';
 
 const FEET = {...hills(), unit: 'US survey foot'};
@@ -165,7 +166,7 @@ viewTest('downloads what it offers, lists whole', {polygon: SQUARE}, async (view
     const file = download.suggestedFilename();
     assert.ok(content.startsWith(starts[file.slice(file.lastIndexOf('.') + 1)]), `${file}: ${content.slice(0, 30)}`);
     if (file.endsWith('polygons.geojson')) assert.equal(JSON.parse(content).features.length, 1006);
-    assert.match(await view.page.locator('#calls code').first().textContent(), new RegExp(`-o ${file.replaceAll('.', '\\.')} `));
+    assert.match(await view.page.locator('#calls code').first().textContent(), new RegExp(`-o ${file.replaceAll('.', '\\.')}$`));
   }
   for (const wanted of ['GLB', 'LandXML', 'GeoJSON']) assert.ok(names.some((name) => name.includes(wanted)), wanted);
 });
@@ -198,7 +199,25 @@ viewTest('shows lines for the shell that do the same', {polygon: SQUARE}, async 
   await button(view, 'Take out').click();
   await view.page.waitForFunction(() => window.tinsmith.app.session.version === 9);
   await view.rest();
-  assert.match(await line(), new RegExp(`^curl -X DELETE .*/v1/sessions/${id}/polygons/p1\\?cascade=true'?$`));
+  assert.match(await line(), new RegExp(`^curl -X DELETE '?http:.*/v1/sessions/${id}/polygons/p1\\?cascade=true'? -H 'Accept`));
   const all = await view.page.locator('#calls code').allTextContents();
   for (const read of all.filter((text) => /mesh\?since|mesh\.glb|history/.test(text))) assert.equal(shell(plain(read)), '200', read);
+});
+
+test('invites to load where there is no terrain', async () => {
+  const server = await startServer();
+  const view = await openPage(stand.browser, server.origin, '', {empty: true});
+  assert.equal(await view.page.locator('#welcome').isVisible(), true);
+  await give(view, '#welcome', 'drop', {files: [{name: 'first.csv', content: readFileSync(join(project, 'tests/data/spot_heights.csv'))}]});
+  await view.page.waitForFunction(() => window.tinsmith.app.session?.id === 'first');
+  await view.rest();
+  assert.equal(await view.page.locator('#welcome').isVisible(), false);
+  const client = new Client(server.origin);
+  assert.equal((await client.json('/v1/sessions')).sessions.length, 1);
+  await view.page.locator('#tab-terrain').click();
+  await button(view, 'Delete…').click();
+  await button(view, 'Delete').click();
+  await view.page.locator('#welcome').waitFor();
+  await view.end();
+  await server.stop();
 });

@@ -154,13 +154,13 @@ const LONGEST = 100_000;
 export function curlLine(call: Call): string {
   const words = ['curl'];
   const {body} = call;
+  if (call.method === 'DELETE' || (call.method === 'PUT' && typeof body === 'string')) words.push('-X', call.method);
+  words.push(quote(urlOf(call)));
   if (body === undefined && call.method === 'POST') words.push('-d', "''");
-  else if (call.method === 'DELETE' || (call.method === 'PUT' && typeof body === 'string')) words.push('-X', call.method);
   for (const [name, value] of Object.entries(call.headers ?? {})) words.push('-H', quote(`${name}: ${value}`));
   if (typeof body === 'string') words.push('-d', quote(call.file || body.length > LONGEST ? `@${call.file ?? 'shape.geojson'}` : body));
   else if (body) words.push(call.method === 'PUT' ? '-T' : '--data-binary', quote((call.method === 'PUT' ? '' : '@') + (call.file ?? 'terrain.tif')));
   if (call.headers?.Accept === DELTA) words.push('-o', 'edit.delta');
   else if (call.out) words.push('-o', quote(call.out));
-  words.push(quote(urlOf(call)));
   return words.join(' ');
 }

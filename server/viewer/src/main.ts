@@ -80,6 +80,8 @@ const showHint = () => {
 };
 view.hint = (text) => { hint = text; showHint(); };
 app.on(['draft'], showHint);
+app.on(['session'], () => { byId('welcome').hidden = app.session !== null; });
+byId('welcome-load').addEventListener('click', () => { byId('file').click(); });
 app.on(['progress'], () => { document.body.classList.toggle('busy', app.busy > 0); });
 pointer.onFinish = () => {
   void app.attempt(() => (draft.kind === 'Profile' ? profile.ask([...draft.points]) : draft.dryRun()));

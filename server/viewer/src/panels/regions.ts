@@ -8,9 +8,10 @@ import {PATTERNS} from '../shaders';
 import {areaText, brief, button, bytesText, field, figures, h, input, number, select, shortUnit} from '../ui';
 import type {View} from '../view';
 
-export function swatch(id: string) {
+export function swatch(id: string, isRegion: boolean) {
   const look = lookOf(id);
-  const element = h('span', {class: `swatch ${PATTERNS[look.pattern]}`, title: `pattern: ${PATTERNS[look.pattern]}`});
+  const pattern = isRegion ? PATTERNS[look.pattern] : 'line';
+  const element = h('span', {class: `swatch ${pattern}`, title: isRegion ? `pattern: ${pattern}` : ''});
   element.style.setProperty('--colour', look.colour);
   return element;
 }
@@ -31,11 +32,11 @@ export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElemen
         app.selected = id;
         app.tell('selection');
         app.say(`Region ${id} selected.`);
-      }, {class: 'row', 'aria-pressed': String(id === app.selected)}), h('small', {}, region ? areaText(region.plan_area, app.session!.unit) : feature.geometry?.type ?? ''));
+      }, {class: 'row', 'aria-pressed': String(id === app.selected)}), h('small', {}, region ? areaText(region.plan_area, app.session!.unit) : /Point/.test(feature.geometry?.type ?? '') ? 'point' : 'line'));
     }));
     [...list.querySelectorAll('button')].forEach((element, i) => {
       const {id} = app.features[i].tinsmith;
-      element.append(swatch(id), h('span', {}, titleOf(app, id)));
+      element.append(swatch(id, areas.has(id)), h('span', {}, titleOf(app, id)));
     });
     const region = app.selected ? areas.get(app.selected) : undefined;
     chosen.hidden = !region;

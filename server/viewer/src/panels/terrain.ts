@@ -13,6 +13,7 @@ export function buildTerrain(app: App, upload: Upload, take: (file: File) => voi
   const told = h('span');
   const progress = h('div', {class: 'progress', hidden: true}, told, bar, button('Stop', () => { void upload.stop(); }, {class: 'small'}));
   const facts = h('div');
+  const title = h('h2', {}, 'Sessions');
   const list = h('ul', {class: 'sessions'});
   const sure = h('div', {class: 'buttons', hidden: true});
   const actions = h('div', {class: 'buttons'},
@@ -46,6 +47,7 @@ export function buildTerrain(app: App, upload: Upload, take: (file: File) => voi
     if (said.length) facts.append(h('ul', {class: 'notes', 'aria-label': 'Said of the file'}, ...said.map((text) => h('li', {}, text))));
   });
   app.on(['sessions', 'session'], () => {
+    title.hidden = app.sessions.length === 0;
     list.replaceChildren(...app.sessions.map((s) => h('li', {}, h('button', {type: 'button', class: 'row', title: s.id, 'aria-current': s.id === app.session?.id ? 'true' : false,
       onclick: () => { void app.attempt(() => app.open(s.id)); }}, h('span', {}, s.name ? `${s.name} – ${s.id}` : s.id)),
       h('small', {}, `${number(s.triangles)} triangles`))));
@@ -53,7 +55,7 @@ export function buildTerrain(app: App, upload: Upload, take: (file: File) => voi
   return h('div', {}, h('div', {class: 'buttons'},
     button('Load a terrain…', () => { byId('file').click(); }, {class: 'main'}), file),
     h('p', {class: 'soft'}, 'Or drop a file on this page: GeoTIFF, ESRI grid, GLB or glTF, LandXML, OBJ, CSV points, JSON.'),
-    buildLoading(upload), progress, h('h2', {}, 'Sessions'), list, actions, sure, facts);
+    buildLoading(upload), progress, title, list, actions, sure, facts);
 }
 
 /** What the bytes of a file do not say. */
