@@ -5,7 +5,7 @@ import type {Compare} from './compare';
 import type {Overlay} from './overlay';
 import type {Pointer} from './pointer';
 import {RAMP} from './shaders';
-import {brief, button, byId, h, number, shortUnit} from './ui';
+import {button, byId, h, number, shortUnit} from './ui';
 import {contourStep, type View} from './view';
 
 export function buildLegend(app: App, view: View) {
@@ -13,15 +13,16 @@ export function buildLegend(app: App, view: View) {
   bar.style.setProperty('--ramp', RAMP.join(', '));
   const ticks = h('div', {class: 'ticks'});
   const title = h('div', {class: 'title'});
+  const lines = h('small');
   const scale = h('div', {class: 'scale'}, h('i'), h('span'));
-  byId('legend').append(h('div', {class: 'ramp'}, title, h('div', {class: 'row'}, bar, ticks)), scale);
+  byId('legend').append(h('div', {class: 'ramp'}, title, h('div', {class: 'row'}, bar, ticks), lines), scale);
   app.on(['look', 'session'], () => {
     const unit = shortUnit(app.session?.unit ?? '');
     const [low, high] = view.range;
     title.textContent = `Elevation, ${unit}${view.exaggeration !== 1 ? ` (×${view.exaggeration})` : ''}`;
     const digits = high - low >= 100 ? 0 : high - low >= 10 ? 1 : 2;
     ticks.replaceChildren(...[1, 0.5, 0].map((part) => h('span', {}, number(low + (high - low) * part, digits))));
-    if (view.contours) title.textContent += `, lines every ${brief(contourStep(high - low))}`;
+    lines.textContent = view.contours ? `lines every ${contourStep(high - low)} ${unit}` : '';
     byId('legend').hidden = !app.session;
   });
   view.stage.onFrame.push(() => {

@@ -65,10 +65,10 @@ function draw(length: number, now: [number, number][][], before: [number, number
   const out = svg('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-label': `Section of ${brief(length)} ${unit}, from ${brief(low)} to ${brief(high)} ${unit}`});
   const step = contourStep((high - low) * 3);
   for (let z = Math.ceil(low / step) * step; z <= high; z += step) {
-    out.append(svg('line', {x1: LEFT, x2: WIDTH - 8, y1: y(z), y2: y(z), class: 'grid'}), svg('text', {x: LEFT - 6, y: y(z) + 3.5, 'text-anchor': 'end'}, brief(z)));
+    out.append(svg('line', {x1: LEFT, x2: WIDTH - 8, y1: y(z), y2: y(z), class: 'grid'}), svg('text', {x: LEFT - 6, y: y(z) + 3.5, 'text-anchor': 'end'}, number(z, Math.max(0, -Math.floor(Math.log10(step))))));
   }
   const along = contourStep(length * 3);
-  for (let d = 0; d <= length; d += along) out.append(svg('text', {x: x(d), y: HEIGHT - 8, 'text-anchor': d === 0 ? 'start' : 'middle'}, d === 0 ? `0 ${unit}` : brief(d)));
+  for (let d = 0; d <= length; d += along) out.append(svg('text', {x: x(d), y: HEIGHT - 8, 'text-anchor': d === 0 ? 'start' : 'middle'}, d === 0 ? `0 ${unit}` : number(d, Math.max(0, -Math.floor(Math.log10(along))))));
   for (const stretch of now) out.append(svg('path', {class: 'fill', d: `${path(stretch)}L${x(stretch[stretch.length - 1][0])} ${HEIGHT - BOTTOM}L${x(stretch[0][0])} ${HEIGHT - BOTTOM}Z`}));
   for (const stretch of before) out.append(svg('path', {class: 'before', d: path(stretch)}));
   for (const stretch of now) out.append(svg('path', {class: 'now', d: path(stretch)}));
