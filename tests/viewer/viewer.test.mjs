@@ -7,7 +7,7 @@ import {execFileSync} from 'node:child_process';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import {ask, project} from '../support/program.mjs';
-import {clickAt} from './browser.mjs';
+import {clickAt, openPage} from './browser.mjs';
 import {assertSameMesh, button, drawSquare, integrate, REFUSED, SQUARE, stand, viewTest} from './stand.mjs';
 
 const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; connect-src 'self'; img-src 'self' data: blob:; style-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
@@ -26,6 +26,17 @@ test('the page is served with its policy, its files for good', async () => {
     assert.equal((await ask(`${stand.server.origin}/${file}`, {headers: {'If-None-Match': answer.headers.get('etag')}})).status, 304);
   }
   for (const path of ['viewer/none.js', 'viewer/index.html', 'viewer/..%2fCMakeCache.txt']) assert.equal((await ask(`${stand.server.origin}/${path}`)).status, 404);
+});
+
+test('opens the demo terrain where no other is asked for', async () => {
+  await stand.client.make('a-first-one');
+  await stand.client.make('demo');
+  const view = await openPage(stand.browser, stand.server.origin, '');
+  assert.equal(await view.page.locator('#session').inputValue(), 'demo');
+  await assertSameMesh(view, 'demo');
+  assert.match(await view.page.locator('#legend').textContent(), /Elevation, m.*\d m$/);
+  await view.end();
+  for (const id of ['a-first-one', 'demo']) await ask(`${stand.server.origin}/v1/sessions/${id}`, {method: 'DELETE'});
 });
 
 viewTest('opens a terrain and says what is under the cursor', async (view, id) => {
