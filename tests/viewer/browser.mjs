@@ -61,7 +61,7 @@ export async function openPage(browser, origin, session, {expected = [], empty =
     document.addEventListener('securitypolicyviolation', (event) => { console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`); });
   });
   await page.goto(`${origin}/#${session}`);
-  const rest = () => page.waitForFunction((none) => window.tinsmith && (none || window.tinsmith.app.session) && window.tinsmith.app.busy === 0, empty);
+  const rest = () => page.waitForFunction((none) => window.tinsmith && (none || window.tinsmith.app.session) && window.tinsmith.app.busy === 0 && !window.tinsmith.stage.isEconomical, empty);
   await rest();
   return {
     page, rest,

@@ -5,7 +5,7 @@ import type {Matrix4} from 'three';
  * Fewer triangles that look the same from one place, for machines that draw with the processor alone.
  * Vertices that fall into one cell of the screen become the first of them (Rossignac and Borrel, 1993,
  * on the screen instead of in space); triangles that collapse by that, and those beyond the view, are
- * left out, as are those that turn over. Nothing moves by more than a cell, and neighbours stay neighbours: no gap opens.
+ * left out. Nothing moves by more than a cell, and neighbours stay neighbours: no gap opens.
  */
 export class Detail {
   /** Which vertex is drawn instead of each. */
@@ -13,7 +13,6 @@ export class Detail {
   /** Where a vertex lies beyond the view: left, right, below, above, behind. */
   private codes = new Uint8Array(0);
   private cells = new Int32Array(0);
-  private positions: Float32Array = new Float32Array(0);
   /** For each vertex what its triangles add up to: 0 where they close around it. */
   private around = new Int32Array(0);
 
@@ -38,7 +37,6 @@ export class Detail {
       this.codes = new Uint8Array(Math.ceil(count * 1.2));
     }
     const {stands, codes, around} = this;
-    this.positions = positions;
     const m = toClip.elements;
     const columns = Math.ceil((width * margin) / cell), rows = Math.ceil((height * margin) / cell);
     if (this.cells.length < columns * rows) this.cells = new Int32Array(columns * rows);
@@ -61,15 +59,13 @@ export class Detail {
 
   /** Writes what is left of the triangles into `out`, which has room for all; how many numbers it wrote. */
   write(corners: Uint32Array, triangles: number, out: Uint32Array): number {
-    const {stands, codes, positions: p} = this;
+    const {stands, codes} = this;
     let used = 0;
     for (let i = 0; i < 3 * triangles; i += 3) {
       const u = corners[i], v = corners[i + 1], w = corners[i + 2];
       if ((codes[u] & codes[v] & codes[w]) !== 0) continue;
       const a = stands[u], b = stands[v], c = stands[w];
       if (a === b || b === c || c === a) continue;
-      // What has turned over lies on others that now reach further.
-      if ((p[3 * b] - p[3 * a]) * (p[3 * c + 1] - p[3 * a + 1]) <= (p[3 * b + 1] - p[3 * a + 1]) * (p[3 * c] - p[3 * a])) continue;
       out[used++] = a; out[used++] = b; out[used++] = c;
     }
     return used;

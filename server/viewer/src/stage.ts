@@ -48,6 +48,8 @@ export class Stage {
   private refreshed = 0;
   private restTimer = 0;
   private economy = false;
+  /** A view that is set is no view that moves. */
+  private fitting = false;
   private readonly size = new Vector2();
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -59,7 +61,7 @@ export class Stage {
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
     this.controls.maxPolarAngle = 1.5;
-    this.controls.addEventListener('change', () => { this.moved(); });
+    this.controls.addEventListener('change', () => { if (!this.fitting) this.moved(); });
     new ResizeObserver(() => { this.resize(); }).observe(canvas.parentElement!);
     this.resize();
   }
@@ -85,11 +87,11 @@ export class Stage {
     return this.economy;
   }
 
-  /** From the world's own axes to the view's. */
-  get toClip(): Matrix4 {
+  /** From an object's own axes to the view's. */
+  toClip(object: Object3D): Matrix4 {
     this.camera.updateMatrixWorld();
-    this.world.updateWorldMatrix(true, false);
-    return new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).multiply(this.world.matrixWorld);
+    object.updateWorldMatrix(true, false);
+    return new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).multiply(object.matrixWorld);
   }
 
   private pixelRatio() {
@@ -227,7 +229,9 @@ export class Stage {
     this.controls.target.copy(target);
     this.controls.maxDistance = back * 5;
     this.controls.minDistance = this.reach * 1e-4;
+    this.fitting = true;
     this.controls.update();
+    this.fitting = false;
     this.onView();
     this.invalidate();
   }

@@ -6,6 +6,9 @@ import {disposeBorrower, Facets} from './facets';
 import type {Mesh} from './mesh';
 import {groundMaterial} from './shaders';
 
+/** Of the upward part of a facet's normal where triangles are left out: 60 degrees. */
+export const STEEPEST_DRAWN = 0.5;
+
 /** The buffers of the mesh on the graphics card. An edit writes the slots that its delta names. */
 export class TerrainView {
   readonly material;
@@ -67,6 +70,7 @@ export class TerrainView {
   setDetail(detail: Detail | null) {
     this.ground.visible = detail === null;
     this.reduced.visible = detail !== null;
+    this.material.uniforms.least_up.value = detail ? STEEPEST_DRAWN : 0;
     if (detail) writeIndex(this.reduced.geometry, this.mesh.corners, this.mesh.triangleCount, detail);
   }
 

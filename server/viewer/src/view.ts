@@ -2,7 +2,7 @@
 // The terrain on the canvas, with all that lies on it.
 import {Vector3} from 'three';
 import type {App} from './app';
-import type {Compare} from './compare';
+import type {Choice, Compare} from './compare';
 import type {Draft} from './draft';
 import {Detail} from './detail';
 import {Lines, segmentsOf} from './lines';
@@ -82,6 +82,7 @@ export class View {
     const {terrain, stage, app: {mesh}} = this;
     if (!terrain) return;
     this.detail = null;
+    let choose: Choice | null = null;
     if (stage.wasSlow && mesh.triangleCount > MANY) {
       const {clientWidth, clientHeight} = stage.canvas;
       const [cell, margin] = stage.isEconomical ? MOVING : RESTING;
@@ -89,9 +90,13 @@ export class View {
         [this.looked, this.lookedAt] = [mesh.version, mesh];
         this.spare.look(mesh.corners, mesh.triangleCount, mesh.vertexCount);
       }
-      this.spare.measure(mesh.local, mesh.vertexCount, stage.toClip, clientWidth, clientHeight, cell, margin);
+      choose = (positions, count, object, detail) => {
+        detail.measure(positions, count, stage.toClip(object), clientWidth, clientHeight, cell, margin);
+      };
+      choose(mesh.local, mesh.vertexCount, terrain.ground, this.spare);
       this.detail = this.spare;
     }
+    this.compare?.setDetail(choose);
     terrain.setDetail(this.detail);
     this.regions.setDetail(this.detail);
   }
@@ -129,8 +134,8 @@ export class View {
     }
     this.stage.world.scale.z = this.exaggeration;
     this.regions.setExaggeration(this.exaggeration);
-    this.refine();
     this.showCompare();
+    this.refine();
     this.showFacets();
     this.app.tell('look');
   }
