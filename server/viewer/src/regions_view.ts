@@ -155,6 +155,11 @@ export class RegionsView {
     for (const {drawn, corners} of this.fills.values()) writeIndex(drawn.geometry, corners, corners.length / 3, detail);
   }
 
+  /** Patterns are as wide on every screen. */
+  setPixel(value: number) {
+    for (const {drawn} of this.fills.values()) drawn.material.uniforms.pixel.value = value;
+  }
+
   setExaggeration(value: number) {
     for (const {drawn} of this.fills.values()) drawn.material.uniforms.exaggeration.value = value;
   }

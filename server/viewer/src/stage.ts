@@ -94,7 +94,8 @@ export class Stage {
     return new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).multiply(object.matrixWorld);
   }
 
-  private pixelRatio() {
+  /** Pixels of the canvas for a CSS pixel. */
+  pixelRatio() {
     return Math.min(window.devicePixelRatio, 2) * (this.economy ? 0.5 : 1);
   }
 

@@ -69,7 +69,7 @@ export class View {
     };
     app.on(['regions'], () => {
       if (!this.terrain) return;
-      this.regions.sync(this.terrain, this.exaggeration, Math.min(devicePixelRatio, 2), this.isFresh);
+      this.regions.sync(this.terrain, this.exaggeration, stage.pixelRatio(), this.isFresh);
       this.isFresh = false;
       this.regions.setDetail(this.detail);
       stage.invalidate();
@@ -99,6 +99,7 @@ export class View {
     this.compare?.setDetail(choose);
     terrain.setDetail(this.detail);
     this.regions.setDetail(this.detail);
+    this.regions.setPixel(stage.pixelRatio());
   }
 
   /** What comes from a file; what is drawn by hand lies above the canvas. */
