@@ -73,6 +73,12 @@ TINSMITH_KEY=${TINSMITH_KEY-$(sed -n 's/^TINSMITH_KEY=//p' "$scratch/log" | head
 export TINSMITH_KEY
 outcome=0
 docker/smoke.sh "http://127.0.0.1:$port" || outcome=1
+# The page of / is in it, with all that it names.
+mapfile -t files < <(curl --silent --fail "http://127.0.0.1:$port/" | grep -oE '(src|href)="viewer/[^"]+"' | cut -d '"' -f 2)
+((${#files[@]} >= 2)) || { echo "the page of / was not built into the image" >&2; outcome=1; }
+for file in "${files[@]}"; do
+    curl --silent --fail --output /dev/null "http://127.0.0.1:$port/$file" || { echo "the page's $file is not served" >&2; outcome=1; }
+done
 "${image[@]}" run --isolation chroot --env "TINSMITH_PORT=$port" "$container" -- tinsmith-healthcheck ||
     { echo "the image's health check fails" >&2; outcome=1; }
 ((outcome == 0)) || cat "$scratch/log" >&2

@@ -45,8 +45,8 @@ export class Client {
   }
 }
 
-/** A page on one session, at rest. */
-export async function openPage(browser, origin, session, {expected = [], ...options} = {}) {
+/** A page on one session, or where there is none yet (`empty`), at rest. */
+export async function openPage(browser, origin, session, {expected = [], empty = false, ...options} = {}) {
   const context = await browser.newContext({viewport: {width: 1280, height: 720}, ...options});
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE);
@@ -61,7 +61,7 @@ export async function openPage(browser, origin, session, {expected = [], ...opti
     document.addEventListener('securitypolicyviolation', (event) => { console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`); });
   });
   await page.goto(`${origin}/#${session}`);
-  const rest = () => page.waitForFunction(() => window.tinsmith?.app.session && window.tinsmith.app.busy === 0);
+  const rest = () => page.waitForFunction((none) => window.tinsmith && (none || window.tinsmith.app.session) && window.tinsmith.app.busy === 0 && !window.tinsmith.stage.isEconomical, empty);
   await rest();
   return {
     page, rest,

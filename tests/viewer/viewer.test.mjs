@@ -4,79 +4,39 @@
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {readFileSync} from 'node:fs';
-import {createRequire} from 'node:module';
 import {join} from 'node:path';
-import {after, before, test} from 'node:test';
-import {ask, project, startServer} from '../support/program.mjs';
-import {Client, clickAt, launch, openPage} from './browser.mjs';
+import {test} from 'node:test';
+import {ask, project} from '../support/program.mjs';
+import {clickAt, openPage} from './browser.mjs';
+import {assertSameMesh, button, drawSquare, integrate, REFUSED, SQUARE, stand, viewTest} from './stand.mjs';
 
-const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
-const SQUARE = {type: 'Polygon', coordinates: [[[120, 120], [250, 115], [260, 240], [125, 250], [120, 120]]]};
 const POLICY = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; connect-src 'self'; img-src 'self' data: blob:; style-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
-// The browser writes a line of its own for each refusal that the page tells in words.
-const REFUSED = [/Failed to load resource: the server responded with a status of 4\d\d/];
-
-let server, browser, client;
-before(async () => {
-  server = await startServer();
-  client = new Client(server.origin);
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  await server?.stop();
-});
-
-/** A page on a session of its own, closed at the end with nothing to complain of. */
-function viewTest(name, options, body) {
-  if (typeof options === 'function') [body, options] = [options, {}];
-  test(name, async () => {
-    const id = name.toLowerCase().replace(/[^a-z0-9]+/g, '-').slice(0, 30).replace(/-$/, '');
-    await client.make(id);
-    if (options.polygon) await client.integrate(id, options.polygon);
-    const view = await openPage(browser, server.origin, id, options);
-    await body(view, id);
-    await view.end();
-  });
-}
-
-const button = (view, name) => view.page.getByRole('button', {name, exact: true});
-
-/** The page's buffers against the server's mesh, number for number. */
-async function assertSameMesh(view, id) {
-  const mesh = await client.json(`/v1/sessions/${id}/mesh.json`);
-  const own = await view.state(() => {
-    const {mesh: m} = window.tinsmith.app;
-    return {version: m.version, vertices: [...m.positions.slice(0, 3 * m.vertexCount)], triangles: [...m.corners.slice(0, 3 * m.triangleCount)]};
-  });
-  assert.deepEqual(own.vertices, mesh.vertices.flat());
-  assert.deepEqual(own.triangles, mesh.triangles.flat());
-  assert.equal(own.version, (await client.session(id)).version);
-}
-
-async function drawSquare(view) {
-  await button(view, 'Draw polygon').click();
-  for (const [x, y] of [[120, 120], [250, 115], [260, 240]]) await clickAt(view, x, y);
-  await view.page.mouse.dblclick(...(await view.spot(125, 250)));
-  await view.page.waitForFunction(() => window.tinsmith.draft.promised);
-  await view.rest();
-}
 
 test('the page is served with its policy, its files for good', async () => {
-  const page = await ask(`${server.origin}/`);
+  const page = await ask(`${stand.server.origin}/`);
   assert.equal(page.headers.get('content-security-policy'), POLICY);
   assert.equal(page.headers.get('cache-control'), 'no-cache');
   const html = await page.text();
   assert.doesNotMatch(html, /https?:\/\/(?!www\.w3\.org)|style=|onload=/);
   for (const [, file] of html.matchAll(/(?:src|href)="(viewer\/[^"]+)"/g)) {
-    const answer = await ask(`${server.origin}/${file}`);
+    const answer = await ask(`${stand.server.origin}/${file}`);
     assert.equal(answer.status, 200);
     assert.match(answer.headers.get('cache-control'), /immutable/);
     assert.equal(answer.headers.get('content-encoding'), 'gzip');
-    assert.equal((await ask(`${server.origin}/${file}`, {headers: {'If-None-Match': answer.headers.get('etag')}})).status, 304);
+    assert.equal((await ask(`${stand.server.origin}/${file}`, {headers: {'If-None-Match': answer.headers.get('etag')}})).status, 304);
   }
-  for (const path of ['viewer/none.js', 'viewer/index.html', 'viewer/..%2fCMakeCache.txt']) assert.equal((await ask(`${server.origin}/${path}`)).status, 404);
+  for (const path of ['viewer/none.js', 'viewer/index.html', 'viewer/..%2fCMakeCache.txt']) assert.equal((await ask(`${stand.server.origin}/${path}`)).status, 404);
+});
+
+test('opens the demo terrain where no other is asked for', async () => {
+  await stand.client.make('a-first-one');
+  await stand.client.make('demo');
+  const view = await openPage(stand.browser, stand.server.origin, '');
+  assert.equal(await view.page.locator('#session').inputValue(), 'demo');
+  await assertSameMesh(view, 'demo');
+  assert.match(await view.page.locator('#legend').textContent(), /Elevation, m.*\d m$/);
+  await view.end();
+  for (const id of ['a-first-one', 'demo']) await ask(`${stand.server.origin}/v1/sessions/${id}`, {method: 'DELETE'});
 });
 
 viewTest('opens a terrain and says what is under the cursor', async (view, id) => {
@@ -86,7 +46,7 @@ viewTest('opens a terrain and says what is under the cursor', async (view, id) =
   await view.page.waitForFunction(() => document.querySelector('#readout').textContent.includes('203.'));
   const readout = await view.page.locator('#readout').textContent();
   const [, x, y, z, triangle] = /x([\d.]+)y([\d.]+)elevation([\d.]+) mtriangle([\d,]+)/.exec(readout);
-  const told = await client.json(`/v1/sessions/${id}/elevation?x=${x}&y=${y}`);
+  const told = await stand.client.json(`/v1/sessions/${id}/elevation?x=${x}&y=${y}`);
   assert.ok(Math.abs(told.elevation - z) < 0.02, `${told.elevation} ${z}`);
   assert.equal(told.triangle, Number(triangle.replace(',', '')));
 });
@@ -94,7 +54,7 @@ viewTest('opens a terrain and says what is under the cursor', async (view, id) =
 viewTest('draws a polygon, promises, and integrates it', async (view, id) => {
   const empty = await view.pixels();
   await drawSquare(view);
-  assert.equal((await client.session(id)).version, 1, 'a dry run changes nothing');
+  assert.equal((await stand.client.session(id)).version, 1, 'a dry run changes nothing');
   assert.match(await view.page.locator('#report').textContent(), /Dry run: nothing is changed yet/);
   const promised = await view.state(() => window.tinsmith.draft.promised.totals);
   const line = await view.page.locator('#calls code').first().textContent();
@@ -105,10 +65,10 @@ viewTest('draws a polygon, promises, and integrates it', async (view, id) => {
   await button(view, 'Integrate').click();
   await view.page.waitForFunction(() => window.tinsmith.draft.measured);
   await view.rest();
-  const session = await client.session(id);
+  const session = await stand.client.session(id);
   assert.deepEqual([session.version, session.polygons], [2, 1]);
-  assert.deepEqual((await client.json(`/v1/sessions/${id}/history/2`)).totals, promised);
-  assert.match(await view.page.locator('#report').textContent(), /Integrated: version 2.*from click to pixels/s);
+  assert.deepEqual((await stand.client.json(`/v1/sessions/${id}/history/2`)).totals, promised);
+  assert.match(await view.page.locator('#report').textContent(), /from click to pixels.*Integrated: version 2/s);
   await assertSameMesh(view, id);
   assert.notEqual(await view.pixels(), empty);
   assert.equal(await view.page.locator('#overlay .label').count(), 1);
@@ -127,7 +87,7 @@ viewTest('takes back corners, cancels, and draws a line', async (view, id) => {
   await view.page.waitForFunction(() => window.tinsmith.draft.promised);
   await button(view, 'Integrate').click();
   await view.page.waitForFunction(() => window.tinsmith.draft.measured);
-  const {features} = await client.json(`/v1/sessions/${id}/polygons`);
+  const {features} = await stand.client.json(`/v1/sessions/${id}/polygons`);
   assert.equal(features[0].geometry.type, 'LineString');
 });
 
@@ -138,16 +98,16 @@ viewTest('edits the ground, undoes and redoes', {polygon: SQUARE}, async (view, 
   const before = await view.pixels();
   await view.page.locator('#edit-dry').click();
   await view.page.waitForFunction(() => document.querySelector('#body-regions').textContent.includes('Dry run: nothing'));
-  assert.equal((await client.session(id)).version, 2);
+  assert.equal((await stand.client.session(id)).version, 2);
   await view.page.locator('#edit-apply').click();
   await view.page.waitForFunction(() => window.tinsmith.app.session.version === 3);
   await view.rest();
-  const report = await client.json(`/v1/sessions/${id}/history/3`);
+  const report = await stand.client.json(`/v1/sessions/${id}/history/3`);
   assert.ok(report.fill > 0);
   await view.page.waitForFunction(() => document.querySelector('#body-regions').textContent.includes('Done: version 3'));
   const after = await view.pixels();
   assert.notEqual(after, before);
-  assert.equal((await client.json(`/v1/sessions/${id}/elevation?x=190&y=180`)).elevation, 120);
+  assert.equal((await stand.client.json(`/v1/sessions/${id}/elevation?x=190&y=180`)).elevation, 120);
   await assertSameMesh(view, id);
 
   await button(view, 'Undo').click();
@@ -159,7 +119,7 @@ viewTest('edits the ground, undoes and redoes', {polygon: SQUARE}, async (view, 
   await view.page.waitForFunction(() => window.tinsmith.app.session.version === 5);
   await view.rest();
   await assertSameMesh(view, id);
-  assert.equal((await client.json(`/v1/sessions/${id}/elevation?x=190&y=180`)).elevation, 120);
+  assert.equal((await stand.client.json(`/v1/sessions/${id}/elevation?x=190&y=180`)).elevation, 120);
 });
 
 viewTest('draws after many edits what a fresh page draws', {polygon: SQUARE}, async (view, id) => {
@@ -171,6 +131,8 @@ viewTest('draws after many edits what a fresh page draws', {polygon: SQUARE}, as
       for (const [x, y] of [[c, c], [c + 90, c + 7], [c + 40, c + 95]]) draft.add(x, y);
       draft.finish();
     }, corner);
+    assert.ok(await button(view, 'Integrate').isDisabled(), 'nothing is done without a report');
+    await button(view, 'Dry run').click();
     await button(view, 'Integrate').click();
     await view.page.waitForFunction(() => window.tinsmith.draft.measured);
     await view.rest();
@@ -189,25 +151,25 @@ viewTest('draws after many edits what a fresh page draws', {polygon: SQUARE}, as
   await view.page.reload();
   await view.rest();
   assert.ok(patched === (await still()), 'the buffers that edits were written to give another picture');
-  assert.equal((await client.session(id)).polygons, 3);
+  assert.equal((await stand.client.session(id)).polygons, 3);
 });
 
 viewTest('cuts a hole, and the buffers shrink with it', {polygon: SQUARE}, async (view, id) => {
-  const before = await client.session(id);
+  const before = await stand.client.session(id);
   await view.page.locator('#tab-regions').click();
   await view.page.locator('.regions button').first().click();
   await view.page.locator('#operation').selectOption('remove');
   await view.page.locator('#edit-apply').click();
   await view.page.waitForFunction(() => window.tinsmith.app.session.version === 3);
   await view.rest();
-  assert.ok((await client.session(id)).triangles < before.triangles);
+  assert.ok((await stand.client.session(id)).triangles < before.triangles);
   await assertSameMesh(view, id);
   await view.page.locator('#tab-history').click();
   assert.equal(await view.page.locator('.history li').count(), 3);
 });
 
 viewTest('shows the section along a line, before and after', {polygon: SQUARE}, async (view, id) => {
-  await client.json(`/v1/sessions/${id}/edits`, {method: 'POST', headers: {'Content-Type': 'application/json'},
+  await stand.client.json(`/v1/sessions/${id}/edits`, {method: 'POST', headers: {'Content-Type': 'application/json'},
     body: JSON.stringify({operation: 'offset', polygon: 'p1', by: 20, rim: 5})});
   await view.page.reload();
   await view.rest();
@@ -223,7 +185,7 @@ viewTest('shows the section along a line, before and after', {polygon: SQUARE}, 
   await view.page.mouse.dblclick(...(await view.spot(340, 185)));
   await view.page.waitForSelector('.plot path.before');
   const line = await view.state(() => window.tinsmith.draft.points);
-  const told = await client.json(`/v1/sessions/${id}/profile`, {method: 'POST', headers: {'Content-Type': 'application/geo+json'},
+  const told = await stand.client.json(`/v1/sessions/${id}/profile`, {method: 'POST', headers: {'Content-Type': 'application/geo+json'},
     body: JSON.stringify({type: 'LineString', coordinates: line})});
   assert.match(await view.page.locator('#body-profile .figures').textContent(), new RegExp(`Edges crossed${told.crossings}`));
   const heights = await view.page.evaluate(() => ['now', 'before'].map((name) => document.querySelector(`.plot path.${name}`).getBBox().y));
@@ -232,7 +194,7 @@ viewTest('shows the section along a line, before and after', {polygon: SQUARE}, 
 });
 
 viewTest('loads a terrain with progress and refuses what it cannot read', {expected: REFUSED}, async (view) => {
-  await ask(`${server.origin}/v1/sessions/jacksboro`, {method: 'DELETE'});
+  await ask(`${stand.server.origin}/v1/sessions/jacksboro`, {method: 'DELETE'});
   await view.page.locator('#tab-terrain').click();
   await view.state(() => {
     window.seen = [];
@@ -242,41 +204,41 @@ viewTest('loads a terrain with progress and refuses what it cannot read', {expec
   await view.page.waitForFunction(() => window.tinsmith.app.session.id === 'jacksboro');
   await view.rest();
   assert.ok((await view.state(() => window.seen)).some((text) => text.includes('Sending jacksboro.tif')));
-  const session = await client.session('jacksboro');
+  const session = await stand.client.session('jacksboro');
   assert.equal(await view.state(() => window.tinsmith.app.mesh.triangleCount), session.triangles);
   await view.page.locator('#file').setInputFiles({name: 'terrain.dat', mimeType: '', buffer: Buffer.from('what is this')});
   await view.page.getByRole('alert').getByText('Content-Type is not supported').waitFor();
-  assert.equal((await client.json('/v1/sessions')).sessions.some(({id}) => id === 'terrain'), false);
-  await ask(`${server.origin}/v1/sessions/jacksboro`, {method: 'DELETE'});
+  assert.equal((await stand.client.json('/v1/sessions')).sessions.some(({id}) => id === 'terrain'), false);
+  await ask(`${stand.server.origin}/v1/sessions/jacksboro`, {method: 'DELETE'});
 });
 
 viewTest('tells of a conflict and resolves it', {expected: REFUSED}, async (view, id) => {
   await drawSquare(view);
-  await client.integrate(id, {type: 'LineString', coordinates: [[20, 20], [380, 60]]});
+  await stand.client.integrate(id, {type: 'LineString', coordinates: [[20, 20], [380, 60]]});
   const stale = await view.pixels();
   await button(view, 'Integrate').click();
   await view.page.getByRole('alert').getByText('Someone else changed this terrain').waitFor();
   await view.rest();
-  assert.deepEqual([(await client.session(id)).version, (await client.session(id)).polygons], [2, 1], 'nothing of it was done');
+  assert.deepEqual([(await stand.client.session(id)).version, (await stand.client.session(id)).polygons], [2, 1], 'nothing of it was done');
   await assertSameMesh(view, id);
   assert.notEqual(await view.pixels(), stale);
   await button(view, 'Do it on this version').click();
   await view.page.waitForFunction(() => window.tinsmith.app.session.version === 3);
   await view.rest();
-  assert.equal((await client.session(id)).polygons, 2);
+  assert.equal((await stand.client.session(id)).polygons, 2);
   await assertSameMesh(view, id);
 });
 
 viewTest('tells what is wrong, and marks where', {expected: REFUSED}, async (view, id) => {
   const bow = {type: 'Polygon', coordinates: [[[100, 100], [300, 300], [900, 100], [100, 300], [100, 100]]]};
-  await view.page.getByText('Options').click();
+  await view.page.locator('#options summary').click();
   await view.page.getByLabel('Off the terrain').selectOption('reject');
   await view.page.getByText('Paste GeoJSON').click();
   await view.page.getByLabel('GeoJSON text').fill(JSON.stringify(bow));
   await button(view, 'Take it').click();
   const told = view.page.getByRole('alert');
   await told.getByText('LEAVES_MESH').first().waitFor();
-  assert.equal((await client.session(id)).version, 1);
+  assert.equal((await stand.client.session(id)).version, 1);
   const mark = view.page.locator('#overlay .mark').first();
   await mark.waitFor();
   await view.page.waitForFunction(() => document.querySelector('#overlay .mark').style.transform);
@@ -302,59 +264,18 @@ viewTest('is where it was after a reload', {polygon: SQUARE}, async (view, id) =
   await assertSameMesh(view, id);
 });
 
-viewTest('does the main job with the keyboard alone', async (view, id) => {
-  const {page} = view;
-  const before = await view.pixels();
-  /** Tabs forward until that element has the focus. */
-  const reach = async (selector) => {
-    for (let i = 0; i < 80; ++i) {
-      await page.keyboard.press('Tab');
-      if (await page.evaluate((s) => document.activeElement.matches(s), selector)) return;
-    }
-    assert.fail(`no Tab leads to ${selector}`);
-  };
-  await reach('#draw-Polygon');
-  await page.keyboard.press('Enter');
-  await reach('#points summary');
-  await page.keyboard.press('Enter');
-  await reach('#points input[placeholder]');
-  for (const corner of ['120, 120', '250 115', '260;240']) {
-    await page.keyboard.type(corner);
-    await page.keyboard.press('Enter');
-  }
-  await reach('#view');
-  await page.keyboard.press('ArrowUp');
-  await page.keyboard.press(' ');
-  assert.equal(await view.state(() => window.tinsmith.draft.points.length), 4, 'the space bar sets a corner at the cross');
-  await page.keyboard.press('Backspace');
-  await page.keyboard.press('Enter');
-  await page.waitForFunction(() => window.tinsmith.draft.promised);
-  await view.rest();
-  await reach('#integrate');
-  await page.keyboard.press('Enter');
-  await page.waitForFunction(() => window.tinsmith.draft.measured);
-  await view.rest();
-  assert.equal((await client.session(id)).polygons, 1);
-  assert.match(await page.locator('#live').textContent(), /Integrated/);
-  await page.keyboard.press('Control+z');
-  await page.waitForFunction(() => window.tinsmith.app.session.version === 3);
-  await view.rest();
-  assert.equal((await client.session(id)).polygons, 0);
-  assert.notEqual(await view.pixels(), before, 'the view was moved by a key');
-});
-
 viewTest('forks a session and deletes the copy', async (view, id) => {
   await view.page.locator('#tab-terrain').click();
   await button(view, 'Fork').click();
   await view.page.waitForFunction((old) => window.tinsmith.app.session.id !== old, id);
   await view.rest();
   const copy = await view.state(() => window.tinsmith.app.session.id);
-  assert.equal((await client.session(copy)).triangles, (await client.session(id)).triangles);
+  assert.equal((await stand.client.session(copy)).triangles, (await stand.client.session(id)).triangles);
   await button(view, 'Delete…').click();
   await button(view, 'Delete').click();
   await view.page.waitForFunction((old) => window.tinsmith.app.session.id !== old, copy);
   await view.rest();
-  assert.equal((await ask(`${server.origin}/v1/sessions/${copy}`)).status, 404);
+  assert.equal((await ask(`${stand.server.origin}/v1/sessions/${copy}`)).status, 404);
 });
 
 viewTest('takes a dropped GeoJSON file, and offers the downloads', async (view, id) => {
@@ -363,26 +284,9 @@ viewTest('takes a dropped GeoJSON file, and offers the downloads', async (view, 
   await view.page.waitForFunction(() => window.tinsmith.draft.promised);
   await view.rest();
   assert.notEqual(await view.pixels(), empty);
-  assert.equal((await client.session(id)).version, 1);
+  assert.equal((await stand.client.session(id)).version, 1);
   await view.page.locator('#download summary').click();
   const links = view.page.locator('#download a');
   await links.first().waitFor();
   for (const link of await links.all()) assert.equal((await ask(await link.evaluate((a) => a.href))).status, 200);
 });
-
-for (const [name, viewport] of [['a desk', {width: 1280, height: 720}], ['a telephone', {width: 390, height: 844}]]) {
-  viewTest(`is accessible on ${name}`, {polygon: SQUARE, viewport}, async (view) => {
-    await view.state(() => { window.tinsmith.app.selected = 'p1'; window.tinsmith.app.tell('selection'); });
-    // The policy lets no script in but the page's own: this one comes in beside it, by the debugger.
-    await view.page.evaluate(readFileSync(AXE, 'utf8'));
-    for (const tab of ['terrain', 'draw', 'regions', 'profile', 'history']) {
-      await view.page.locator(`#tab-${tab}`).click();
-      const {violations} = await view.page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
-      const serious = violations.filter(({impact}) => ['serious', 'critical'].includes(impact))
-        .map(({id, nodes}) => `${tab}: ${id} ${nodes.map(({target}) => target).join(' ')}`);
-      assert.deepEqual(serious, []);
-      const wide = await view.state(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-      assert.equal(wide, 0, `${tab} is no wider than the screen`);
-    }
-  });
-}

@@ -12,6 +12,8 @@ export interface Call {
   body?: string | Blob;
   /** What the body is called on the reader's disk; without a name it stands in the curl line. */
   file?: string;
+  /** What the answer is called there, where it is no text to read. */
+  out?: string;
 }
 
 export interface Fault {
@@ -29,6 +31,8 @@ export class Problem extends Error {
               readonly errors: Fault[], readonly etag: string | null) {
     super(detail);
   }
+  /** What was asked. */
+  call: Call | null = null;
   get word() {
     return this.type.slice(this.type.lastIndexOf(':') + 1);
   }
@@ -37,6 +41,7 @@ export class Problem extends Error {
 export interface Session {
   id: string; name: string; crs: string; unit: string; version: number; vertices: number; triangles: number;
   bounds: [number, number, number, number, number, number]; polygons: number; memory_bytes: number;
+  notes?: string[]; repairs?: {code: string; count: number}[];
 }
 export interface AngleReport { before: number; after: number; p1_before: number; p1_after: number }
 export interface PolygonReport {
@@ -97,7 +102,7 @@ export async function send(call: Call): Promise<Response> {
     throw new Problem(0, 'about:blank', 'The server does not answer',
       'The request did not get through: see whether the server still runs, then try again.', [], null);
   }
-  if (!response.ok) throw await problemOf(response);
+  if (!response.ok) throw Object.assign(await problemOf(response), {call});
   return response;
 }
 
@@ -106,10 +111,10 @@ export async function json<T>(call: Call): Promise<T> {
 }
 
 /** The members of a list that comes by pages. */
-export async function pages<T>(path: string, member: string): Promise<T[]> {
+export async function pages<T>(path: string, member: string, headers?: Record<string, string>): Promise<T[]> {
   const all: T[] = [];
   for (let next: string | null = base + path; next;) {
-    const response: Response = await fetch(next);
+    const response: Response = await fetch(next, {headers});
     if (!response.ok) throw await problemOf(response);
     all.push(...(await response.json())[member]);
     const link: RegExpExecArray | null = /<([^>]+)>;\s*rel="next"/.exec(response.headers.get('Link') ?? '');
@@ -119,7 +124,7 @@ export async function pages<T>(path: string, member: string): Promise<T[]> {
 }
 
 /** Sends a file with progress from 0 to 1, which fetch does not tell. */
-export function upload(call: Call, told: (part: number) => void): Promise<{status: number; location: string | null; body: any}> {
+export function upload(call: Call, told: (part: number) => void, signal: AbortSignal): Promise<{status: number; location: string | null; body: any}> {
   return new Promise((resolve, reject) => {
     const request = new XMLHttpRequest();
     request.open(call.method, urlOf(call));
@@ -127,6 +132,8 @@ export function upload(call: Call, told: (part: number) => void): Promise<{statu
     request.upload.onprogress = (event) => told(event.lengthComputable ? event.loaded / event.total : 0);
     request.onerror = () => reject(new Problem(0, 'about:blank', 'The upload broke off',
       'The connection ended before the file was through. A server that refuses a large file does this: see its limits.', [], null));
+    request.onabort = () => reject(new Problem(499, '', 'Stopped', `${call.file ?? 'The file'} was not sent.`, [], null));
+    signal.addEventListener('abort', () => { request.abort(); });
     request.onload = () => {
       let said: any = {};
       try { said = JSON.parse(request.responseText); } catch { /* told by the status */ }
@@ -147,13 +154,13 @@ const LONGEST = 100_000;
 export function curlLine(call: Call): string {
   const words = ['curl'];
   const {body} = call;
+  if (call.method === 'DELETE' || (call.method === 'PUT' && typeof body === 'string')) words.push('-X', call.method);
+  words.push(quote(urlOf(call)));
   if (body === undefined && call.method === 'POST') words.push('-d', "''");
-  else if (call.method === 'DELETE' || (call.method === 'PUT' && typeof body === 'string')) words.push('-X', call.method);
   for (const [name, value] of Object.entries(call.headers ?? {})) words.push('-H', quote(`${name}: ${value}`));
   if (typeof body === 'string') words.push('-d', quote(call.file || body.length > LONGEST ? `@${call.file ?? 'shape.geojson'}` : body));
   else if (body) words.push(call.method === 'PUT' ? '-T' : '--data-binary', quote((call.method === 'PUT' ? '' : '@') + (call.file ?? 'terrain.tif')));
   if (call.headers?.Accept === DELTA) words.push('-o', 'edit.delta');
-  else if (/mesh\.glb$/.test(call.path)) words.push('-o', 'mesh.glb');
-  words.push(quote(urlOf(call)));
+  else if (call.out) words.push('-o', quote(call.out));
   return words.join(' ');
 }

@@ -2,7 +2,9 @@
 // What the page knows, and who wants to hear when it changes.
 import {type Call, curlLine, DELTA, type Feature, type Fault, type History, json, pages, Problem, type Region, send,
   type Session, sessionPath} from './api';
+import {type AngleChange, watchAngles} from './angles';
 import {type Delta, readDelta} from './delta';
+import {placeOf} from './fault_place';
 import {GroundIndex} from './ground_index';
 import {Mesh} from './mesh';
 
@@ -11,9 +13,9 @@ export type Topic = 'sessions' | 'session' | 'mesh' | 'regions' | 'history' | 'd
 
 export interface Mark { x: number; y: number; text: string }
 export interface Told { title: string; detail: string; errors: Fault[]; conflict: boolean; retry: (() => void) | null }
-/** What an edit took, from the click to the pixels. */
-export interface Cost { bytes: number; ms: number }
-export interface Edited { version: number; cost: Cost; history: string | null }
+/** What an edit took, from the click to the pixels; `answer`: until the server's answer was there. */
+export interface Cost { bytes: number; ms: number; answer: number }
+export interface Edited { version: number; cost: Cost; angles: AngleChange | null; history: string | null }
 
 export class App {
   sessions: Session[] = [];
@@ -58,6 +60,19 @@ export class App {
     this.tell('tab');
   }
 
+  /** Runs what nobody asked for: where it fails, nothing is told. */
+  async quietly(what: () => Promise<void>) {
+    ++this.busy;
+    try {
+      await what();
+    } catch {
+      // What it would have shown stays out of date, and says so.
+    } finally {
+      --this.busy;
+      this.tell('progress');
+    }
+  }
+
   /** Runs what a button asks for; what goes wrong is told on the page. */
   async attempt<T>(what: () => Promise<T>, retry: (() => void) | null = null): Promise<T | undefined> {
     ++this.busy;
@@ -85,7 +100,8 @@ export class App {
         detail: `Your request was made for an older version and nothing of it was done. The changes have been fetched: you see version ${this.mesh.version} now.`,
         errors: [], conflict: true, retry};
     } else {
-      this.problem = {title: error.title, detail: error.message, errors: error.errors, conflict: false, retry: null};
+      const errors = error.errors.map((fault) => ({...fault, coordinate: placeOf(fault, error.call, this.session?.crs ?? '')}));
+      this.problem = {title: error.title, detail: error.message, errors, conflict: false, retry: null};
     }
     this.say(`${this.problem.title}. ${this.problem.detail}`);
     this.tell('problem');
@@ -133,6 +149,7 @@ export class App {
       json<Session>({method: 'GET', path}), pages<Feature>(`${path}/polygons`, 'features'),
       pages<Region>(`${path}/regions`, 'regions'), wholeHistory(path)]);
     if (session.id !== this.session.id) return;
+    for (const region of regions) region.triangles.sort((a, b) => a - b);
     [this.session, this.features, this.regions, this.history] = [session, features, regions, history];
     if (!regions.some((region) => region.polygon === this.selected)) this.selected = null;
     const listed = this.sessions.findIndex((one) => one.id === session.id);
@@ -140,20 +157,29 @@ export class App {
     this.tell('session', 'sessions', 'regions', 'history', 'selection');
   }
 
+  /** The polygons around a triangle, the smallest first. */
+  around(triangle: number): Region[] {
+    return this.regions.filter((region) => holds(region.triangles, triangle)).sort((a, b) => a.plan_area - b.plan_area);
+  }
+
   /** Fetches what others have changed. */
   async catchUp() {
-    const response = await send({method: 'GET', path: this.path('/mesh'), query: {since: String(this.mesh.version)}, headers: {Accept: DELTA}});
+    const call: Call = {method: 'GET', path: this.path('/mesh'), query: {since: String(this.mesh.version)}, headers: {Accept: DELTA}};
+    const response = await send(call);
     const delta = readDelta(await response.arrayBuffer());
     if (delta.to === this.mesh.version && !delta.whole) return;
+    this.note(call);
     await this.take(delta, response);
     await this.refresh();
   }
 
-  private async take(delta: Delta, response: Response) {
+  private async take(delta: Delta, response: Response): Promise<AngleChange | null> {
+    const angles = watchAngles(this.mesh, delta);
     if (!this.mesh.apply(delta)) throw new Error(`A delta from version ${delta.from} came for version ${this.mesh.version}.`);
     this.etag = tagOf(response);
     this.ground.update(delta.triangleRuns, delta.whole);
     await this.show(delta, false);
+    return angles?.() ?? null;
   }
 
   /** An edit of the version that is on the screen. Its answer is what changed. */
@@ -163,12 +189,23 @@ export class App {
     this.note(full);
     const response = await send(full);
     const delta = readDelta(await response.arrayBuffer());
-    await this.take(delta, response);
-    const cost = {bytes: delta.bytes, ms: performance.now() - begin};
+    const answer = performance.now() - begin;
+    const angles = await this.take(delta, response);
+    const cost = {bytes: delta.bytes, ms: performance.now() - begin, answer};
     await this.refresh();
     const link = /<([^>]+)>;\s*rel="describedby"/.exec(response.headers.get('Link') ?? '');
-    return {version: delta.to, cost, history: link ? link[1] : `${this.path('/history/')}${delta.to}`};
+    return {version: delta.to, cost, angles, history: link ? link[1] : `${this.path('/history/')}${delta.to}`};
   }
+}
+
+/** Whether a list in ascending order has it. */
+function holds(list: number[], value: number): boolean {
+  let low = 0, high = list.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (list[middle] < value) low = middle + 1; else high = middle;
+  }
+  return list[low] === value;
 }
 
 /** Of the session, without what the representation adds. */

@@ -5,26 +5,24 @@ import type {Compare} from './compare';
 import type {Overlay} from './overlay';
 import type {Pointer} from './pointer';
 import {RAMP} from './shaders';
-import {brief, button, byId, h, number, shortUnit} from './ui';
+import {button, byId, h, number, shortUnit} from './ui';
 import {contourStep, type View} from './view';
 
 export function buildLegend(app: App, view: View) {
-  const bar = h('canvas', {width: 8, height: 120, 'aria-hidden': 'true'});
-  const paint = bar.getContext('2d')!;
-  const gradient = paint.createLinearGradient(0, 120, 0, 0);
-  RAMP.forEach((colour, i) => { gradient.addColorStop(i / (RAMP.length - 1), colour); });
-  paint.fillStyle = gradient;
-  paint.fillRect(0, 0, 8, 120);
+  const bar = h('div', {class: 'bar'});
+  bar.style.setProperty('--ramp', RAMP.join(', '));
   const ticks = h('div', {class: 'ticks'});
   const title = h('div', {class: 'title'});
+  const lines = h('small');
   const scale = h('div', {class: 'scale'}, h('i'), h('span'));
-  byId('legend').append(h('div', {class: 'ramp'}, title, h('div', {class: 'row'}, bar, ticks)), scale);
+  byId('legend').append(h('div', {class: 'ramp'}, title, h('div', {class: 'row'}, bar, ticks), lines), scale);
   app.on(['look', 'session'], () => {
     const unit = shortUnit(app.session?.unit ?? '');
     const [low, high] = view.range;
     title.textContent = `Elevation, ${unit}${view.exaggeration !== 1 ? ` (×${view.exaggeration})` : ''}`;
-    ticks.replaceChildren(...[1, 0.5, 0].map((part) => h('span', {}, brief(low + (high - low) * part))));
-    if (view.contours) title.textContent += `, lines every ${brief(contourStep(high - low))}`;
+    const digits = high - low >= 100 ? 0 : high - low >= 10 ? 1 : 2;
+    ticks.replaceChildren(...[1, 0.5, 0].map((part) => h('span', {}, number(low + (high - low) * part, digits))));
+    lines.textContent = view.contours ? `lines every ${contourStep(high - low)} ${unit}` : '';
     byId('legend').hidden = !app.session;
   });
   view.stage.onFrame.push(() => {
@@ -43,7 +41,7 @@ export function buildReadout(app: App, pointer: Pointer) {
     const readout = byId('readout');
     readout.hidden = !hover;
     if (!hover) return;
-    const polygons = app.regions.filter((region) => region.triangles.includes(hover.triangle)).map((region) => region.polygon);
+    const polygons = app.around(hover.triangle).map((region) => region.polygon);
     const cell = (name: string, value: string) => h('span', {}, h('small', {}, name), value);
     readout.replaceChildren(cell('x', number(hover.x, 2)), cell('y', number(hover.y, 2)),
       cell('elevation', `${number(hover.z, 2)} ${shortUnit(app.session?.unit ?? '')}`),

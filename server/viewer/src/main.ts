@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {App} from './app';
 import {Compare} from './compare';
+import {CursorView} from './cursor_view';
 import {Draft} from './draft';
 import {buildLegend, buildLooks, buildReadout} from './furniture';
 import {Overlay} from './overlay';
@@ -37,17 +38,21 @@ const upload = new Upload(app);
 const live = byId('live');
 app.say = (text) => { live.textContent = text; };
 
+const isGeoJson = (head: string) => GEOJSON_TYPE.test(head) && !/"(mesh|grid|points)"\s*:/.test(head);
+
+function takeShape(name: string, text: string) {
+  app.openTab('draw');
+  void app.attempt(async () => {
+    try { draft.take(name, text); } catch { throw new Error(`${name || 'What was pasted'} is not JSON.`); }
+    await draft.dryRun();
+  });
+}
+
 /** A file is a terrain, or polygons where it is GeoJSON. */
 async function take(file: File) {
   const isText = /\.(geo)?json$/i.test(file.name);
-  const head = isText ? await file.slice(0, HEAD_BYTES).text() : '';
-  if (isText && GEOJSON_TYPE.test(head) && !/"(mesh|grid|points)"\s*:/.test(head)) {
-    const text = await file.text();
-    app.openTab('draw');
-    await app.attempt(async () => {
-      try { draft.take(file.name, text); } catch { throw new Error(`${file.name} is not JSON.`); }
-      await draft.dryRun();
-    });
+  if (isText && isGeoJson(await file.slice(0, HEAD_BYTES).text())) {
+    takeShape(file.name, await file.text());
   } else {
     app.openTab('terrain');
     await app.attempt(() => upload.take(file));
@@ -68,28 +73,41 @@ buildTabs(app, [
   ['profile', 'Profile', buildProfile(app, draft, profile, view)],
   ['history', 'History', buildHistory(app, compare)],
 ]);
-view.follow(pointer);
+new CursorView(app, draft, pointer, stage);
 let hint = '';
 const showHint = () => {
   byId('hint').textContent = draft.drawing ? 'Click to set corners. Enter finishes, Backspace takes back, Escape cancels.' : hint;
 };
 view.hint = (text) => { hint = text; showHint(); };
 app.on(['draft'], showHint);
+app.on(['session'], () => { byId('welcome').hidden = app.session !== null; });
+byId('welcome-load').addEventListener('click', () => { byId('file').click(); });
 app.on(['progress'], () => { document.body.classList.toggle('busy', app.busy > 0); });
 pointer.onFinish = () => {
   void app.attempt(() => (draft.kind === 'Profile' ? profile.ask([...draft.points]) : draft.dryRun()));
 };
 
-const frame = byId('frame');
-for (const kind of ['dragenter', 'dragover']) {
-  frame.addEventListener(kind, (event) => { event.preventDefault(); frame.classList.add('dropping'); });
-}
-frame.addEventListener('dragleave', () => { frame.classList.remove('dropping'); });
-frame.addEventListener('drop', (event) => {
-  event.preventDefault();
-  frame.classList.remove('dropping');
-  const file = event.dataTransfer?.files[0];
+/** What is dropped or pasted: a file, or text that is GeoJSON. */
+function takeFrom(data: DataTransfer | null): boolean {
+  const file = data?.files[0], text = data?.getData('text/plain') ?? '';
   if (file) void take(file);
+  else if (isGeoJson(text.slice(0, HEAD_BYTES))) takeShape('', text);
+  else return false;
+  return true;
+}
+
+for (const kind of ['dragenter', 'dragover']) {
+  document.addEventListener(kind, (event) => { event.preventDefault(); document.body.classList.add('dropping'); });
+}
+document.addEventListener('dragleave', (event) => { if (!event.relatedTarget) document.body.classList.remove('dropping'); });
+document.addEventListener('drop', (event) => {
+  event.preventDefault();
+  document.body.classList.remove('dropping');
+  if (!takeFrom(event.dataTransfer)) app.say('That is neither a file nor GeoJSON.');
+});
+document.addEventListener('paste', (event) => {
+  if ((event.target as HTMLElement).closest?.('input, textarea')) return;
+  if (takeFrom(event.clipboardData)) event.preventDefault();
 });
 // Others may have changed the terrain while the page was not looked at.
 document.addEventListener('visibilitychange', () => {
@@ -104,4 +122,4 @@ void app.attempt(async () => {
   else { app.close(); app.openTab('terrain'); }
 });
 // For those who measure: `tinsmith.stage.frames`, and the mesh as it is.
-Object.assign(window, {tinsmith: {app, stage, view, draft}});
+Object.assign(window, {tinsmith: {app, stage, view, draft, pointer, profile}});

@@ -26,7 +26,8 @@ export class Overlay {
   private replaced(old: Pin[], made: Pin[]) {
     for (const {element} of old) element.remove();
     this.layer.append(...made.map(({element}) => element));
-    this.stage.invalidate();
+    // At their places at once: the ground is not drawn again for them.
+    this.put(made);
     return made;
   }
 
@@ -68,7 +69,13 @@ export class Overlay {
   }
 
   private place() {
-    for (const {element, at} of [...this.labels, ...this.corners, ...this.marks]) {
+    this.put(this.labels);
+    this.put(this.corners);
+    this.put(this.marks);
+  }
+
+  private put(pins: Pin[]) {
+    for (const {element, at} of pins) {
       const spot = this.stage.project(at);
       element.hidden = spot === null;
       if (spot) element.style.transform = `translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;

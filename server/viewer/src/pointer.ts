@@ -73,8 +73,7 @@ export class Pointer {
   /** Selects the smallest region under the cursor. */
   private pick(hit: Hit | null) {
     if (!hit) return;
-    const found = this.app.regions.filter((region) => region.triangles.includes(hit.triangle))
-      .sort((a, b) => a.plan_area - b.plan_area)[0];
+    const found = this.app.around(hit.triangle)[0];
     this.app.selected = found ? found.polygon : null;
     if (found) {
       this.app.say(`Region ${found.polygon} selected.`);

@@ -11,36 +11,68 @@ export class Profile {
   /** [distance, elevation] of stretches. */
   before: {version: number; stretches: [number, number][][]} | null = null;
 
+  /** The version shown beside; 'last': the one before the newest, where there is one. */
+  against: number | 'last' | 'none' = 'last';
+  private turn = 0;
+
   constructor(private readonly app: App, private readonly compare: Compare) {
-    app.on(['mesh'], () => { if (this.line.length > 1) void app.attempt(() => this.ask(this.line)); });
-    app.on(['compare'], () => { if (this.line.length > 1) void app.attempt(() => this.askBefore()); });
+    app.on(['mesh'], () => {
+      if (app.session?.id !== this.terrain) this.clear();
+    });
+    app.on(['history'], () => { if (this.now && this.now.version !== app.session?.version) void app.quietly(() => this.ask(this.line)); });
+    app.on(['compare'], () => {
+      if (compare.version === null) return;
+      this.against = compare.version;
+      if (this.now) void app.quietly(() => this.askBefore());
+    });
+  }
+  private terrain = '';
+
+  /** What can be shown beside. */
+  get versions(): number[] {
+    return (this.app.history?.changes ?? []).map((change) => change.version).filter((version) => version < (this.app.session?.version ?? 0));
+  }
+  get version(): number | null {
+    const {versions, against} = this;
+    if (against === 'none') return null;
+    return against !== 'last' && versions.includes(against) ? against : versions[versions.length - 1] ?? null;
   }
 
   clear() {
-    [this.line, this.now, this.before] = [[], null, null];
+    ++this.turn;
+    [this.line, this.now, this.before, this.against] = [[], null, null, 'last'];
     this.app.tell('profile');
   }
 
   async ask(line: Position[]) {
     this.line = line;
+    this.terrain = this.app.session?.id ?? '';
+    const turn = ++this.turn;
     const call: Call = {
       method: 'POST', path: this.app.path('/profile'), headers: {'Content-Type': GEOJSON},
       body: JSON.stringify({type: 'LineString', coordinates: line}),
     };
     this.app.note(call);
-    this.now = await json<Answer>(call);
-    this.app.tell('profile');
+    const now = await json<Answer>(call);
+    if (turn !== this.turn) return;
+    this.now = now;
     await this.askBefore();
   }
 
-  /** The same along the mesh of the version that is compared with, which this page holds. */
-  private async askBefore() {
-    const version = this.compare.version;
+  /** The same along the mesh of an earlier version, of which the triangles around the line are fetched. */
+  async askBefore() {
+    const turn = ++this.turn;
+    const {version, line} = this;
     this.before = null;
-    if (version !== null && this.now && version !== this.now.version) {
-      const ground = await this.compare.ground();
-      if (ground) this.before = {version, stretches: alongGround(ground, this.line)};
-    }
+    this.app.tell('profile');
+    if (version === null) return;
+    const [xs, ys] = [line.map(([x]) => x), line.map(([, y]) => y)];
+    const box = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+    // A line along an axis has a box without a width.
+    const room = Math.max(box[2] - box[0], box[3] - box[1]) * 1e-3;
+    const ground = await this.compare.groundOf(version, box.map((v, k) => (k < 2 ? v - room : v + room)));
+    if (turn !== this.turn) return;
+    this.before = {version, stretches: alongGround(ground, line)};
     this.app.tell('profile');
   }
 }

@@ -19,7 +19,6 @@ export class RegionEdit {
   promised: EditReport | null = null;
   measured: {report: EditReport; cost: Cost} | null = null;
   volume: {question: string; answer: Volume} | null = null;
-  /** Counts the answers that do not hold any more. */
 
   constructor(private readonly app: App) {
     app.on(['selection'], () => { this.forget(); });

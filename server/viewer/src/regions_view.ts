@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-import {BufferAttribute, BufferGeometry, Group, Mesh as Drawn, type ShaderMaterial, Sphere} from 'three';
+import {BufferGeometry, Group, Mesh as Drawn, type ShaderMaterial, Sphere} from 'three';
 import type {App} from './app';
+import type {Detail} from './detail';
 import {disposeBorrower} from './facets';
 import {Lines, segmentsOf} from './lines';
 import {PATTERNS, regionMaterial} from './shaders';
-import type {TerrainView} from './terrain_view';
+import {type TerrainView, writeIndex} from './terrain_view';
 
 /** Told apart with all kinds of sight (Okabe and Ito), and by pattern too. */
 const COLOURS = ['#0072b2', '#d55e00', '#8b3f9e', '#00806a', '#c2185b', '#6b5b00'];
@@ -35,15 +36,18 @@ export function linesOf(geometry: any): number[][][] {
 
 const GLOW_MS = 2600;
 
+interface Fill { drawn: Drawn<BufferGeometry, ShaderMaterial>; corners: Uint32Array }
+
 /** Regions in their colours, the edges that they have made, and those that are new. */
 export class RegionsView {
   readonly group = new Group();
   private readonly constraints = new Lines({colour: '#13251d', width: 1.6});
   private readonly chosen = new Lines({colour: '#0b1711', width: 3.2});
   private readonly glow = new Lines({colour: '#ffb02e', width: 7, above: true});
-  private readonly fills = new Map<string, Drawn<BufferGeometry, ShaderMaterial>>();
+  private readonly fills = new Map<string, Fill>();
   private known = new Set<string>();
   private glowing = 0;
+  private isReduced = false;
   showFills = true;
   showLines = true;
 
@@ -56,37 +60,40 @@ export class RegionsView {
   reset() {
     this.known.clear();
     this.glow.set([]);
-    for (const fill of this.fills.values()) { fill.removeFromParent(); disposeBorrower(fill.geometry); fill.material.dispose(); }
-    this.fills.clear();
+    this.dropFills();
     this.constraints.set([]);
     this.chosen.set([]);
   }
 
   /** The buffers of the ground may be others now. */
   share(terrain: TerrainView) {
-    for (const fill of this.fills.values()) fill.geometry.setAttribute('position', terrain.position);
+    for (const {drawn} of this.fills.values()) drawn.geometry.setAttribute('position', terrain.position);
+  }
+
+  private dropFills() {
+    for (const {drawn} of this.fills.values()) { drawn.removeFromParent(); disposeBorrower(drawn.geometry); drawn.material.dispose(); }
+    this.fills.clear();
   }
 
   sync(terrain: TerrainView, exaggeration: number, pixel: number, isFirst: boolean) {
     const {app} = this;
     const {corners, origin} = app.mesh;
-    for (const fill of this.fills.values()) { fill.removeFromParent(); disposeBorrower(fill.geometry); fill.material.dispose(); }
-    this.fills.clear();
+    this.dropFills();
     for (const region of app.regions) {
       const look = lookOf(region.polygon);
-      const index = new Uint32Array(3 * region.triangles.length);
-      region.triangles.forEach((t, i) => { index.set(corners.subarray(3 * t, 3 * t + 3), 3 * i); });
+      const own = new Uint32Array(3 * region.triangles.length);
+      region.triangles.forEach((t, i) => { own.set(corners.subarray(3 * t, 3 * t + 3), 3 * i); });
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', terrain.position);
-      geometry.setIndex(new BufferAttribute(index, 1));
       geometry.boundingSphere = new Sphere();
-      const fill = new Drawn(geometry, regionMaterial(look.colour, look.pattern));
-      fill.material.uniforms.exaggeration.value = exaggeration;
-      fill.material.uniforms.pixel.value = pixel;
-      fill.frustumCulled = false;
-      fill.renderOrder = 1;
-      this.fills.set(region.polygon, fill);
-      this.group.add(fill);
+      writeIndex(geometry, own, region.triangles.length, null);
+      const drawn = new Drawn(geometry, regionMaterial(look.colour, look.pattern));
+      drawn.material.uniforms.exaggeration.value = exaggeration;
+      drawn.material.uniforms.pixel.value = pixel;
+      drawn.frustumCulled = false;
+      drawn.renderOrder = 1;
+      this.fills.set(region.polygon, {drawn, corners: own});
+      this.group.add(drawn);
     }
     const ends: number[] = [];
     const fresh: number[] = [];
@@ -131,9 +138,9 @@ export class RegionsView {
     const {app} = this;
     const feature = app.features.find((one) => one.tinsmith.id === app.selected);
     this.chosen.set(feature ? linesOf(feature.geometry).flatMap((line) => segmentsOf(line, app.mesh.origin)) : []);
-    for (const [id, fill] of this.fills) {
-      fill.visible = this.showFills;
-      fill.material.uniforms.strength.value = id === app.selected ? 0.5 : 0.22;
+    for (const [id, {drawn}] of this.fills) {
+      drawn.visible = this.showFills;
+      drawn.material.uniforms.strength.value = id === app.selected ? 0.5 : 0.22;
     }
     this.chosen.visible = this.chosen.visible && this.showLines;
     if (feature) this.chosen.material.color.set(lookOf(feature.tinsmith.id).colour);
@@ -141,13 +148,19 @@ export class RegionsView {
     this.draw();
   }
 
-  /** Large fills are left out while the view moves and frames are slow; outlines stay. */
-  setEconomy(economy: boolean) {
-    const all = this.app.regions.reduce((sum, region) => sum + region.triangles.length, 0);
-    for (const fill of this.fills.values()) fill.visible = this.showFills && !(economy && all > 20_000);
+  /** With the same vertices as the ground below them, which would cover them else. */
+  setDetail(detail: Detail | null) {
+    if (!detail && !this.isReduced) return;
+    this.isReduced = detail !== null;
+    for (const {drawn, corners} of this.fills.values()) writeIndex(drawn.geometry, corners, corners.length / 3, detail);
+  }
+
+  /** Patterns are as wide on every screen. */
+  setPixel(value: number) {
+    for (const {drawn} of this.fills.values()) drawn.material.uniforms.pixel.value = value;
   }
 
   setExaggeration(value: number) {
-    for (const fill of this.fills.values()) fill.material.uniforms.exaggeration.value = value;
+    for (const {drawn} of this.fills.values()) drawn.material.uniforms.exaggeration.value = value;
   }
 }

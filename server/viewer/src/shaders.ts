@@ -26,10 +26,14 @@ void main() {
 }`;
 
 // One facet, one shade: what is seen is the triangles, not a guess between them.
+// `least_up` bounds how steep facets are taken to be: vertices that were drawn together to a pixel
+// make slivers that stand upright, and would glitter.
 const LIGHT = `
+uniform float least_up;
 vec3 facet() {
   vec3 n = normalize(cross(dFdx(at), dFdy(at)));
-  return n.z < 0.0 ? -n : n;
+  n = n.z < 0.0 ? -n : n;
+  return normalize(vec3(n.xy, max(n.z, least_up)));
 }
 float light(vec3 n) {
   float sun = max(dot(n, normalize(vec3(-0.55, 0.45, 0.7))), 0.0);
@@ -40,7 +44,7 @@ float light(vec3 n) {
 export function groundMaterial(ramp: CanvasTexture) {
   return new ShaderMaterial({
     side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 8,
-    uniforms: {ramp: {value: ramp}, range: {value: new Vector2(0, 1)}, exaggeration: {value: 1}, contour: {value: 0}, grey: {value: 0}},
+    uniforms: {ramp: {value: ramp}, range: {value: new Vector2(0, 1)}, exaggeration: {value: 1}, contour: {value: 0}, grey: {value: 0}, least_up: {value: 0}},
     vertexShader: VERTEX,
     fragmentShader: `
 varying vec3 at;
@@ -70,7 +74,7 @@ export const PATTERNS = ['rising', 'falling', 'upright', 'level', 'grid', 'dots'
 export function regionMaterial(colour: string, pattern: number) {
   return new ShaderMaterial({
     side: DoubleSide, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4,
-    uniforms: {colour: {value: new Color(colour)}, pattern: {value: pattern % PATTERNS.length}, strength: {value: 0.3}, pixel: {value: 1}, exaggeration: {value: 1}},
+    uniforms: {colour: {value: new Color(colour)}, pattern: {value: pattern % PATTERNS.length}, strength: {value: 0.3}, pixel: {value: 1}, exaggeration: {value: 1}, least_up: {value: 0}},
     vertexShader: VERTEX,
     fragmentShader: `
 varying vec3 at;

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-import {Color, Group, type Object3D, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
+import {Color, Group, Matrix4, type Object3D, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from 'three';
 import {MapControls} from 'three/examples/jsm/controls/MapControls.js';
 
 /** Frames slower than this while the view moves are drawn with less. */
 const SLOW_MS = 60;
 const REST_MS = 180;
+/** What is drawn of a view that moves is chosen anew after so long. */
+const REFRESH_MS = 400;
 
-/** Whether drawing is not the processor's work, for which smooth edges cost too much. */
+/** Whether drawing is not the processor's work, for which smooth edges and a million triangles cost too much. */
 function hasGraphicsCard(): boolean {
   const context = document.createElement('canvas').getContext('webgl2', {failIfMajorPerformanceCaveat: true});
-  context?.getExtension('WEBGL_lose_context')?.loseContext();
-  return context !== null;
+  if (!context) return false;
+  // Browsers that are told to draw so do not call it a caveat.
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const renderer = String(context.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
 }
 
 /**
@@ -26,26 +32,28 @@ export class Stage {
   readonly controls: MapControls;
   /** Called before each frame, for what is HTML above the canvas. */
   readonly onFrame: (() => void)[] = [];
-  /** Told whether less should be drawn because the view moves and frames are slow. */
-  onEconomy: (economy: boolean) => void = () => {};
-  /** Called when the view has come to rest. */
-  onRest: () => void = () => {};
+  /** Called when the view has come to rest, is another, or moves so slowly that less should be drawn. */
+  onView: () => void = () => {};
   /** The ground as it was, on the left of the part `swipe`; null: no comparison. */
   compare: {before: Object3D; now: Object3D[]; part: number} | null = null;
   frames = 0;
   private pending = false;
   private moving = false;
   private slow = 0;
-  /** Of the terrain on the screen. */
-  wasSlow = false;
+  private readonly hasCard = hasGraphicsCard();
+  /** Frames of this terrain have been slow, or will be. */
+  wasSlow = !this.hasCard;
   private lastFrame = 0;
   private lastTook = 0;
+  private refreshed = 0;
   private restTimer = 0;
   private economy = false;
+  /** A view that is set is no view that moves. */
+  private fitting = false;
   private readonly size = new Vector2();
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({canvas, antialias: hasGraphicsCard(), powerPreference: 'high-performance'});
+    this.renderer = new WebGLRenderer({canvas, antialias: this.hasCard, powerPreference: 'high-performance'});
     this.scene.background = new Color('#e9edea');
     this.scene.add(this.world);
     this.camera.up.set(0, 0, 1);
@@ -53,7 +61,7 @@ export class Stage {
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
     this.controls.maxPolarAngle = 1.5;
-    this.controls.addEventListener('change', () => { this.moved(); });
+    this.controls.addEventListener('change', () => { if (!this.fitting) this.moved(); });
     new ResizeObserver(() => { this.resize(); }).observe(canvas.parentElement!);
     this.resize();
   }
@@ -65,10 +73,29 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    this.onView();
     this.invalidate();
   }
 
-  private pixelRatio() {
+  /** Another terrain: what was slow may be fast. */
+  startAnew() {
+    this.wasSlow = !this.hasCard;
+  }
+
+  /** Whether the view moves and less is drawn. */
+  get isEconomical() {
+    return this.economy;
+  }
+
+  /** From an object's own axes to the view's. */
+  toClip(object: Object3D): Matrix4 {
+    this.camera.updateMatrixWorld();
+    object.updateWorldMatrix(true, false);
+    return new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).multiply(object.matrixWorld);
+  }
+
+  /** Pixels of the canvas for a CSS pixel. */
+  pixelRatio() {
     return Math.min(window.devicePixelRatio, 2) * (this.economy ? 0.5 : 1);
   }
 
@@ -85,7 +112,7 @@ export class Stage {
     this.restTimer = window.setTimeout(() => {
       this.moving = false;
       this.setEconomy(false);
-      this.onRest();
+      this.onView();
     }, wait);
     this.invalidate();
   }
@@ -93,9 +120,14 @@ export class Stage {
   private setEconomy(economy: boolean) {
     if (economy === this.economy) return;
     this.economy = economy;
-    this.onEconomy(economy);
+    if (economy) this.refresh();
     this.renderer.setPixelRatio(this.pixelRatio());
     this.invalidate();
+  }
+
+  private refresh() {
+    this.refreshed = performance.now();
+    this.onView();
   }
 
   /** Draws at the next frame. */
@@ -136,6 +168,7 @@ export class Stage {
       }
     }
     this.lastFrame = now;
+    if (this.economy && performance.now() - this.refreshed > REFRESH_MS) this.refresh();
     ++this.frames;
     const far = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(far / 100, 0.01);
@@ -165,28 +198,42 @@ export class Stage {
 
   private reach = 1000;
 
-  /** Looks at a box of the scene from the south, from above. `steep`: straight down. */
-  fit(center: Vector3, width: number, height: number, steep = false) {
+  /** Looks at a box of the scene from the south, from above, so that it fills the frame. `steep`: straight down. */
+  fit(center: Vector3, [width, height, depth]: [number, number, number], steep = false) {
     this.reach = Math.max(width, height, 1);
-    const across = Math.max((width / this.camera.aspect) * 1.05, height * (steep ? 1 : 1.02), 1e-3);
-    const distance = (across / 2 / Math.tan((this.camera.fov * Math.PI) / 360)) * 1.1;
-    this.controls.target.copy(center);
+    const direction = (steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.08, -0.62, 0.78)).normalize();
+    const corners = [-0.5, 0.5].flatMap((x) => [-0.5, 0.5].flatMap((y) => [-0.5, 0.5].map((z) => new Vector3(x * width, y * height, z * depth).add(center))));
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const target = center.clone();
+    let back = this.reach / half;
     this.camera.near = this.reach / 1000;
     this.camera.far = this.reach * 100;
     this.camera.updateProjectionMatrix();
-    const direction = steep ? new Vector3(0, -1e-4, 1) : new Vector3(-0.08, -0.62, 0.78);
-    direction.normalize();
-    // Back until the corners of the box are within the frame, below what stands on its upper margin.
-    for (let back = distance * 0.7, tries = 0; tries < 30; ++tries, back *= 1.05) {
-      this.camera.position.copy(center).addScaledVector(direction, back);
-      this.camera.lookAt(center);
+    // Nearer and aside, until the corners reach from margin to margin; what stands above has its own.
+    for (let round = 0; round < 12; ++round) {
+      this.camera.position.copy(target).addScaledVector(direction, back);
+      this.camera.lookAt(target);
       this.camera.updateMatrixWorld();
-      const corners = [-1, 1].flatMap((x) => [-1, 1].map((y) => new Vector3(x * width, y * height, 0).multiplyScalar(0.5).add(center).project(this.camera)));
-      if (corners.every((at) => Math.abs(at.x) < 0.96 && at.y > -0.97 && at.y < 0.86)) break;
+      const seen = corners.map((corner) => corner.clone().project(this.camera));
+      const [left, right] = [Math.min(...seen.map(({x}) => x)), Math.max(...seen.map(({x}) => x))];
+      const [low, high] = [Math.min(...seen.map(({y}) => y)), Math.max(...seen.map(({y}) => y))];
+      const [lowest, highest] = [-0.93, 0.8];
+      const side = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0), up = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+      target.addScaledVector(side, ((left + right) / 2) * half * this.camera.aspect * back);
+      target.addScaledVector(up, ((low + high) / 2 - (lowest + highest) / 2) * half * back);
+      back *= Math.max((right - left) / 1.88, (high - low) / (highest - lowest), 0.3);
     }
-    this.controls.maxDistance = distance * 6;
+    // Around a place of the ground, not one above or below it.
+    target.addScaledVector(direction, (center.z - target.z) / direction.z);
+    this.camera.position.copy(target).addScaledVector(direction, back);
+    this.camera.lookAt(target);
+    this.controls.target.copy(target);
+    this.controls.maxDistance = back * 5;
     this.controls.minDistance = this.reach * 1e-4;
+    this.fitting = true;
     this.controls.update();
+    this.fitting = false;
+    this.onView();
     this.invalidate();
   }
 

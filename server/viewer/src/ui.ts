@@ -63,6 +63,7 @@ export function number(value: number, digits = 0): string {
 export function brief(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return '0';
+  if (!Number.isFinite(value)) return '–';
   if (size < 1e-3 || size >= 1e12) {
     const [digits, power] = value.toExponential(1).split('e');
     return `${digits}·10${[...power.replace('+', '')].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)])).join('')}`;
@@ -72,6 +73,12 @@ export function brief(value: number): string {
 
 export function shortUnit(unit: string): string {
   return unit.startsWith('met') ? 'm' : /foot|feet/.test(unit) ? 'ft' : unit;
+}
+
+/** A millimetre in the session's unit, to five digits. */
+export function millimetre(unit: string): string {
+  const metres = unit === 'foot' ? 0.3048 : unit === 'US survey foot' ? 1200 / 3937 : 1;
+  return String(Number((0.001 / metres).toPrecision(5)));
 }
 
 export function areaText(area: number, unit: string): string {

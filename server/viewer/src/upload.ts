@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A terrain from the reader's disk becomes a session, as a job with progress.
-import {base, type Call, type Job, json, Problem, send, type Session, upload} from './api';
+import {type Call, type Job, json, Problem, send, type Session, upload} from './api';
 import type {App} from './app';
 
 const TYPES: Record<string, string> = {
@@ -11,7 +11,10 @@ export const TERRAIN_ENDINGS = Object.keys(TYPES).map((ending) => `.${ending}`).
 
 export class Upload {
   progress: {text: string; part: number} | null = null;
+  /** Of `PUT /v1/sessions/{id}`, where the file does not say it; '': not asked for. */
+  options = {crs: '', unit: '', project: '', repair: ''};
   private job: string | null = null;
+  private sending: AbortController | null = null;
 
   constructor(private readonly app: App) {}
 
@@ -27,17 +30,20 @@ export class Upload {
     let id = stem;
     for (let n = 2; taken.has(id); ++n) id = `${stem}-${n}`;
     const call: Call = {
-      method: 'PUT', path: `/v1/sessions/${id}`, body: file, file: file.name,
+      method: 'PUT', path: `/v1/sessions/${id}`, query: Object.fromEntries(Object.entries(this.options).filter(([, value]) => value !== '')),
+      body: file, file: file.name,
       headers: {'Content-Type': TYPES[ending] || file.type || 'application/octet-stream', Prefer: 'respond-async'},
     };
     this.app.note(call);
     try {
       this.tell(`Sending ${file.name}`, 0);
-      const sent = await upload(call, (part) => { this.tell(`Sending ${file.name}`, part / 2); });
+      this.sending = new AbortController();
+      const sent = await upload(call, (part) => { this.tell(`Sending ${file.name}`, part / 2); }, this.sending.signal);
+      this.sending = null;
       if (sent.status === 202) await this.follow(sent.location!, file.name);
     } finally {
       this.progress = null;
-      this.job = null;
+      this.job = this.sending = null;
       this.app.tell('progress');
     }
     await this.app.listSessions();
@@ -59,7 +65,11 @@ export class Upload {
   }
 
   async stop() {
-    if (this.job) await fetch(base + this.job, {method: 'DELETE'});
+    this.sending?.abort();
+    if (!this.job) return;
+    const call: Call = {method: 'DELETE', path: this.job};
+    this.app.note(call);
+    await send(call);
   }
 
   async fork() {

@@ -2,10 +2,11 @@
 // The terrain on the canvas, with all that lies on it.
 import {Vector3} from 'three';
 import type {App} from './app';
-import type {Compare} from './compare';
+import type {Choice, Compare} from './compare';
 import type {Draft} from './draft';
+import {Detail} from './detail';
 import {Lines, segmentsOf} from './lines';
-import type {Pointer} from './pointer';
+import type {Mesh} from './mesh';
 import type {Profile} from './profile';
 import {linesOf, RegionsView} from './regions_view';
 import {rampTexture} from './shaders';
@@ -13,6 +14,10 @@ import type {Stage} from './stage';
 import {TerrainView} from './terrain_view';
 
 const PARTS = 40;
+/** Fewer triangles than these are always drawn all. */
+const MANY = 150_000;
+/** Cells, in pixels, and how much of what lies around the view is drawn along. */
+const RESTING = [1.5, 1.02], MOVING = [5, 1.5];
 
 export class View {
   readonly ramp = rampTexture();
@@ -25,25 +30,24 @@ export class View {
   /** Shows a line above the map; set by the page. */
   hint: (text: string) => void = () => {};
   private readonly sketch = new Lines({colour: '#c2410c', width: 2.6, above: true});
-  private readonly band = new Lines({colour: '#c2410c', width: 1.6, above: true});
   private readonly section = new Lines({colour: '#5b21b6', width: 2.6, above: true});
-  private readonly under = new Lines({colour: '#111111', width: 1.4, above: true});
   private isFresh = true;
+  private readonly spare = new Detail();
+  private looked = 0;
+  private lookedAt: Mesh | null = null;
+  /** In use where drawing all takes too long. */
+  private detail: Detail | null = null;
 
   constructor(private readonly app: App, private readonly draft: Draft, readonly stage: Stage) {
     this.regions = new RegionsView(app, () => { stage.invalidate(); }, () => stage.wasSlow);
-    stage.world.add(this.regions.group, this.sketch, this.band, this.section, this.under);
-    stage.onRest = () => { this.showFacets(); };
-    stage.onEconomy = (economy) => {
-      this.terrain?.setEconomy(economy);
-      this.regions.setEconomy(economy);
-    };
+    stage.world.add(this.regions.group, this.sketch, this.section);
+    stage.onView = () => { this.refine(); this.showFacets(); };
     app.show = async (delta, isNew) => {
       if (isNew) {
         this.terrain?.dispose();
         this.regions.reset();
         this.isFresh = true;
-        stage.wasSlow = false;
+        stage.startAnew();
         const wireframe = this.terrain?.wireframe ?? false;
         this.terrain = new TerrainView(app.mesh, this.ramp);
         this.terrain.sync(delta);
@@ -65,40 +69,50 @@ export class View {
     };
     app.on(['regions'], () => {
       if (!this.terrain) return;
-      this.regions.sync(this.terrain, this.exaggeration, Math.min(devicePixelRatio, 2), this.isFresh);
+      this.regions.sync(this.terrain, this.exaggeration, stage.pixelRatio(), this.isFresh);
       this.isFresh = false;
+      this.regions.setDetail(this.detail);
       stage.invalidate();
     });
     app.on(['draft'], () => { this.drawSketch(); });
   }
 
-  /** What is told by the pointer. */
-  follow(pointer: Pointer) {
-    this.app.on(['hover', 'draft'], () => {
-      const {hover} = pointer;
-      const {mesh} = this.app;
-      const last = this.draft.points[this.draft.points.length - 1];
-      this.band.set(this.draft.drawing && last && hover ? segmentsOf(this.app.ground.drape(last, [hover.x, hover.y], PARTS), mesh.origin) : []);
-      if (hover && !this.draft.drawing) {
-        const corner = [0, 1, 2, 0].map((k) => 3 * mesh.corners[3 * hover.triangle + k]);
-        this.under.set(segmentsOf(corner.map((at) => [mesh.positions[at], mesh.positions[at + 1], mesh.positions[at + 2]]), mesh.origin));
-      } else {
-        this.under.set([]);
+  /** Chooses how much is drawn for the view as it is. */
+  private refine() {
+    const {terrain, stage, app: {mesh}} = this;
+    if (!terrain) return;
+    this.detail = null;
+    let choose: Choice | null = null;
+    if (stage.wasSlow && mesh.triangleCount > MANY) {
+      const {clientWidth, clientHeight} = stage.canvas;
+      const [cell, margin] = stage.isEconomical ? MOVING : RESTING;
+      if (this.looked !== mesh.version || this.lookedAt !== mesh) {
+        [this.looked, this.lookedAt] = [mesh.version, mesh];
+        this.spare.look(mesh.corners, mesh.triangleCount, mesh.vertexCount);
       }
-      this.stage.invalidate();
-    });
+      choose = (positions, count, object, detail) => {
+        detail.measure(positions, count, stage.toClip(object), clientWidth, clientHeight, cell, margin);
+      };
+      choose(mesh.local, mesh.vertexCount, terrain.ground, this.spare);
+      this.detail = this.spare;
+    }
+    this.compare?.setDetail(choose);
+    terrain.setDetail(this.detail);
+    this.regions.setDetail(this.detail);
+    this.regions.setPixel(stage.pixelRatio());
   }
 
+  /** What comes from a file; what is drawn by hand lies above the canvas. */
   private drawSketch() {
     const {draft, app} = this;
-    const lines = draft.imported ? linesOf(draft.imported.value)
-      : [draft.kind === 'Polygon' && !draft.drawing && draft.points.length > 2 ? [...draft.points, draft.points[0]] : draft.points];
+    const lines = draft.imported && !draft.placed ? linesOf(draft.imported.value) : [];
+    if (lines.length === 0 && !draft.placed && !this.sketch.visible) return;
     const total = lines.reduce((all, line) => all + line.length, 0);
     const parts = total > 2000 ? 2 : total > 200 ? 8 : PARTS;
     const ends: number[] = [];
-    for (const line of lines)
-      for (let i = 1; i < line.length; ++i)
-        for (const value of segmentsOf(app.ground.drape(line[i - 1], line[i], parts), app.mesh.origin)) ends.push(value);
+    const add = (line: (number[] | null)[]) => { for (const value of segmentsOf(line, app.mesh.origin)) ends.push(value); };
+    for (const line of draft.placed ?? []) add(line);
+    for (const line of lines) for (let i = 1; i < line.length; ++i) add(app.ground.drape(line[i - 1], line[i], parts));
     this.sketch.set(ends);
     this.stage.invalidate();
   }
@@ -122,6 +136,7 @@ export class View {
     this.stage.world.scale.z = this.exaggeration;
     this.regions.setExaggeration(this.exaggeration);
     this.showCompare();
+    this.refine();
     this.showFacets();
     this.app.tell('look');
   }
@@ -143,6 +158,7 @@ export class View {
   showFacets() {
     const {terrain, compare, stage} = this;
     if (!terrain) return;
+    if (stage.isEconomical) { terrain.facets.visible = false; return; }
     terrain.showFacets(stage.camera);
     compare?.showFacets(terrain.wireframe && compare.swipe, stage.camera);
     this.hint(terrain.wireframe && terrain.facets.inView > 0 && !terrain.facets.visible
@@ -155,14 +171,14 @@ export class View {
     if (!b) return;
     const {origin} = this.app.mesh;
     const middle = new Vector3((b[0] + b[3]) / 2 - origin[0], (b[1] + b[4]) / 2 - origin[1], ((b[2] + b[5]) / 2 - origin[2]) * this.exaggeration);
-    this.stage.fit(middle, b[3] - b[0], b[4] - b[1], steep);
+    this.stage.fit(middle, [b[3] - b[0], b[4] - b[1], (b[5] - b[2]) * this.exaggeration], steep);
   }
 
   /** Brings a plan position into the middle, near enough to see `size` around it. */
   goTo(x: number, y: number, size: number) {
     const {origin} = this.app.mesh;
     const z = this.app.ground.at(x, y)?.z ?? origin[2];
-    this.stage.fit(new Vector3(x - origin[0], y - origin[1], (z - origin[2]) * this.exaggeration), size, size);
+    this.stage.fit(new Vector3(x - origin[0], y - origin[1], (z - origin[2]) * this.exaggeration), [size, size, 0]);
   }
 }
 

@@ -22,6 +22,7 @@ export function buildCalls(app: App) {
     }
     setTimeout(() => { copy.textContent = 'Copy'; }, 1500);
   }
+  older.hidden = true;
   app.on(['calls'], () => {
     line.textContent = app.calls[0] ? curlLine(app.calls[0]) : '';
     older.lastElementChild!.replaceChildren(...app.calls.slice(1).map((call) => h('div', {class: 'old'},

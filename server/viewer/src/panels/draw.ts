@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The main job: a shape, what would come of it, and then its edges in the mesh.
 import type {App} from '../app';
-import {DEFAULTS, type Draft, type Kind} from '../draft';
-import {button, field, h, input, number, select} from '../ui';
+import type {Draft, Kind} from '../draft';
+import {button, field, h, input, number, select, shortUnit} from '../ui';
 import {buildReport} from './report';
 
 const CHOICES: [string, string, [string, string][], string][] = [
@@ -82,11 +82,14 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
       : draft.drawing ? `${number(n)} ${n === 1 ? 'corner' : 'corners'}. Click to add; double-click or Enter finishes, Backspace takes back, Escape cancels.`
       : n > 0 ? `${draft.kind === 'Polygon' ? 'Polygon' : 'Line'} of ${number(n)} corners.` : 'Draw a shape, or drop a GeoJSON file on the map.';
     const isOurs = draft.kind !== 'Profile';
-    dry.disabled = go.disabled = !draft.isComplete || !isOurs || !app.session;
+    dry.disabled = !draft.isComplete || !isOurs || !app.session;
     finish.hidden = !draft.drawing || !isOurs;
     cancel.hidden = !isOurs || (!draft.drawing && n === 0 && !draft.imported);
     points.hidden = !isOurs || draft.imported !== null;
   });
+  // Nothing is done of which there was no report.
+  const lock = () => { go.disabled = dry.disabled || draft.promised === null || draft.stale || draft.drawing; };
+  app.on(['draft', 'report', 'session', 'mesh', 'progress'], lock);
   app.on(['session'], () => { draft.changed(); });
   return h('div', {}, h('div', {class: 'buttons'}, h('span', {class: 'soft'}, 'Draw'), ...kinds.map(([, element]) => element), h('span', {class: 'soft'}, 'or'), button('GeoJSON…', () => { file.click(); }), file),
     paste, state, points, h('div', {class: 'buttons'}, finish, cancel), buildOptions(app, draft),
@@ -98,20 +101,33 @@ function buildOptions(app: App, draft: Draft): HTMLElement {
     draft.options[name] = value;
     deviation.hidden = draft.options.improve !== 'bounded';
     crossing.hidden = draft.options.elevation !== 'own';
-    const others = Object.keys(DEFAULTS).filter((key) => draft.options[key] !== DEFAULTS[key]);
-    summary.textContent = others.length ? `Options: ${others.map((key) => `${key} ${draft.options[key]}`).join(', ')}` : 'Options';
+    tell();
     // What was promised was promised for other options.
-    if (draft.promised) void app.attempt(() => draft.dryRun());
+    if (draft.promised && draft.isComplete) {
+      draft.stale = true;
+      void app.attempt(() => draft.dryRun());
+    }
   };
-  const rows = new Map(CHOICES.map(([name, label, options, hint]) => [name, field(label, select(options, DEFAULTS[name], changed(name)), hint)]));
-  const number = (name: string, label: string, hint: string) => {
-    const control = input(DEFAULTS[name], () => {}, {onchange: () => { changed(name)(control.value.trim()); }});
+  const tell = () => {
+    const {defaults} = draft;
+    const others = Object.keys(defaults).filter((key) => draft.options[key] !== defaults[key]);
+    summary.textContent = others.length ? `Options: ${others.map((key) => `${key} ${draft.options[key]}`).join(', ')}` : 'Options';
+  };
+  const rows = new Map(CHOICES.map(([name, label, options, hint]) => [name, field(label, select(options, draft.options[name], changed(name)), hint)]));
+  const typed = (name: string, label: string, hint: string, attributes = {}) => {
+    const control = input(draft.options[name], () => {}, {id: `option-${name}`, ...attributes, onchange: () => { changed(name)(control.value.trim()); }});
+    app.on(['options'], () => { control.value = draft.options[name]; tell(); });
     return field(label, control, hint);
   };
-  const deviation = number('max_deviation', 'Deviation', 'at most');
+  const deviation = typed('max_deviation', 'Deviation', 'at most');
   const crossing = rows.get('on_crossing')!;
   deviation.hidden = crossing.hidden = true;
   const summary = h('summary', {}, 'Options');
+  const snap = typed('snap', 'Snap', '');
+  const reach = h('small');
+  snap.append(reach);
+  app.on(['session'], () => { reach.textContent = `${shortUnit(app.session?.unit ?? 'metre')}, to corners and edges this near`; });
   return h('details', {id: 'options'}, summary, h('div', {class: 'fields'}, rows.get('elevation')!, crossing, rows.get('improve')!, deviation,
-    number('snap', 'Snap', 'to corners and edges this near'), rows.get('outside')!, rows.get('winding')!, rows.get('lock')!));
+    snap, rows.get('outside')!, rows.get('winding')!, rows.get('lock')!,
+    typed('crs', 'System', 'of the GeoJSON, east before north; empty: the terrain’s', {placeholder: 'EPSG:4326', inputmode: 'text'})));
 }

@@ -1,41 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's head: which terrain, which version, downloads; and the tabs below it.
-import {base, json} from '../api';
+import {type Call, GEOJSON, pages, sessionPath, urlOf} from '../api';
 import type {App} from '../app';
 import {byId, h} from '../ui';
 
-const FILES: [string, string, string][] = [
-  ['mesh.glb', '/mesh.glb', 'GLB with Draco, for viewers'],
-  ['mesh.glb?compression=none&up=z', '/mesh.glb', 'GLB, plain, z up'],
-  ['mesh.json', '/mesh.json', 'JSON, full doubles'],
-  ['polygons', '/polygons', 'GeoJSON of the polygons, on the ground'],
-  ['mesh.obj', '/mesh.obj', 'OBJ'],
-  ['mesh.xml', '/mesh.xml', 'LandXML'],
-  ['mesh.gltf', '/mesh.gltf', 'glTF'],
+interface Download { text: string; path: string; query?: Record<string, string>; ending: string; accept?: string }
+
+const FILES: Download[] = [
+  {text: 'GLB with Draco', path: '/mesh.glb', ending: 'glb'},
+  {text: 'GLB, regions as primitives', path: '/mesh.glb', query: {regions: 'true'}, ending: 'regions.glb'},
+  {text: 'GLB, plain, z up', path: '/mesh.glb', query: {compression: 'none', up: 'z'}, ending: 'plain.glb'},
+  {text: 'LandXML', path: '/mesh.xml', ending: 'xml'},
+  {text: 'OBJ', path: '/mesh.obj', ending: 'obj'},
+  {text: 'JSON, full doubles', path: '/mesh.json', ending: 'json'},
+  {text: 'Polygons on the ground, GeoJSON', path: '/polygons', ending: 'polygons.geojson', accept: GEOJSON},
+  {text: 'Regions with areas, GeoJSON', path: '/regions', ending: 'regions.geojson', accept: GEOJSON},
+  {text: 'Constrained edges, GeoJSON', path: '/constraints', ending: 'constraints.geojson', accept: GEOJSON},
 ];
+
+/** A list that comes by pages becomes one file. */
+async function save(path: string, accept: string, name: string) {
+  const features = await pages(path, 'features', {Accept: accept});
+  const address = URL.createObjectURL(new Blob([JSON.stringify({type: 'FeatureCollection', features})], {type: accept}));
+  h('a', {href: address, download: name}).click();
+  setTimeout(() => { URL.revokeObjectURL(address); }, 60_000);
+}
+
+function buildDownloads(app: App, menu: HTMLDetailsElement) {
+  app.on(['session'], () => { menu.hidden = !app.session; });
+  menu.addEventListener('toggle', () => {
+    if (!menu.open || !app.session) return;
+    const {id} = app.session;
+    menu.lastElementChild!.replaceChildren(...FILES.map(({text, path, query, ending, accept}) => {
+      const name = `${id}.${ending}`;
+      const call: Call = {method: 'GET', path: sessionPath(id, path), query, out: name, ...(accept && {headers: {Accept: accept}})};
+      return h('a', {href: urlOf(call), download: name, onclick: (event: Event) => {
+        app.note(call);
+        menu.open = false;
+        if (!accept) return;
+        event.preventDefault();
+        void app.attempt(() => save(call.path, accept, name));
+      }}, text);
+    }));
+  });
+}
 
 export function buildHead(app: App) {
   const select = byId<HTMLSelectElement>('session');
   select.addEventListener('change', () => { void app.attempt(() => app.open(select.value)); });
   app.on(['sessions', 'session'], () => {
-    select.replaceChildren(...app.sessions.map((s) => h('option', {value: s.id}, s.name ? `${s.id} – ${s.name}` : s.id)));
+    select.replaceChildren(...app.sessions.map((s) => h('option', {value: s.id}, s.name ? `${s.name} – ${s.id}` : s.id)));
     if (!app.session) select.prepend(h('option', {value: ''}, 'No terrain'));
     select.value = app.session?.id ?? '';
     byId('version').textContent = app.session ? `version ${app.session.version}` : '';
     document.title = app.session ? `${app.session.name || app.session.id} – Tinsmith` : 'Tinsmith';
   });
-  const menu = byId<HTMLDetailsElement>('download');
-  let served: Set<string> | null = null;
-  app.on(['session'], () => { menu.hidden = !app.session; });
-  menu.addEventListener('toggle', () => {
-    if (!menu.open || !app.session) return;
-    void app.attempt(async () => {
-      served ??= new Set(Object.keys((await json<{paths: object}>({method: 'GET', path: '/openapi.json'})).paths));
-      const {id} = app.session!;
-      menu.lastElementChild!.replaceChildren(...FILES.filter(([, path]) => served!.has(`/v1/sessions/{id}${path}`)).map(([file, path, text]) =>
-        h('a', {href: `${base}/v1/sessions/${encodeURIComponent(id)}/${file}`, download: `${id}${path === '/polygons' ? '.geojson' : path.slice(path.lastIndexOf('.'))}`}, text)));
-    });
-  });
+  buildDownloads(app, byId<HTMLDetailsElement>('download'));
   document.addEventListener('click', (event) => {
     for (const open of document.querySelectorAll<HTMLDetailsElement>('details.menu[open]')) if (!open.contains(event.target as Node)) open.open = false;
   });

@@ -24,7 +24,7 @@ export function buildHistory(app: App, compare: Compare): HTMLElement {
         h('div', {}, h('b', {}, `v${change.version}`), ` ${WORDS[change.change] ?? change.change}`,
           change.of ? ` v${change.of}` : '', change.polygons.length ? `: ${change.polygons.join(', ')}` : '', isNow && h('em', {}, 'now')),
         h('small', {}, `${number(change.triangles)} triangles`),
-        h('span', {class: 'buttons'}, !isNow && button(isBefore ? 'Compared' : 'Compare', () => {
+        h('span', {class: 'buttons'}, !isNow && button('Compare', () => {
           void app.attempt(async () => {
             await compare.load(change.version);
             compare.swipe = true;
@@ -34,8 +34,10 @@ export function buildHistory(app: App, compare: Compare): HTMLElement {
         }, {class: 'small', 'aria-label': `Compare with version ${change.version}`, 'aria-pressed': String(isBefore)}),
         change.change !== 'created' && button('Report', () => {
           void app.attempt(async () => {
+            const call = {method: 'GET', path: app.path(`/history/${change.version}`)};
+            app.note(call);
             report.hidden = false;
-            report.textContent = JSON.stringify(await json({method: 'GET', path: app.path(`/history/${change.version}`)}), null, 1);
+            report.textContent = JSON.stringify(await json(call), null, 1);
           });
         }, {class: 'small', 'aria-label': `Report of version ${change.version}`})));
     }));

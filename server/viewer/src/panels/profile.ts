@@ -3,7 +3,7 @@
 import type {App} from '../app';
 import type {Draft} from '../draft';
 import type {Profile} from '../profile';
-import {brief, button, figures, h, number, shortUnit, svg} from '../ui';
+import {brief, button, field, figures, h, number, select, shortUnit, svg} from '../ui';
 import {contourStep, type View} from '../view';
 import {pointTable} from './draw';
 
@@ -20,6 +20,14 @@ export function buildProfile(app: App, draft: Draft, profile: Profile, view: Vie
     points.hidden = ask.hidden = !isOurs;
     ask.disabled = !draft.isComplete;
     state.textContent = isOurs && draft.drawing ? `${draft.points.length} corners. Double-click or Enter shows the section.` : 'A line across the terrain, and the ground along it.';
+  });
+  const beside = h('div');
+  app.on(['profile', 'history'], () => {
+    const choices: [string, string][] = [['none', 'nothing'], ...profile.versions.reverse().map((v): [string, string] => [String(v), `version ${v}`])];
+    beside.replaceChildren(...(profile.now && choices.length > 1 ? [field('Before', select(choices, String(profile.version ?? 'none'), (value) => {
+      profile.against = value === 'none' ? 'none' : Number(value);
+      void app.attempt(() => profile.askBefore());
+    }, {id: 'beside'}))] : []));
   });
   app.on(['profile'], () => {
     view.showProfile(profile);
@@ -40,8 +48,7 @@ export function buildProfile(app: App, draft: Draft, profile: Profile, view: Vie
   });
   return h('div', {}, h('div', {class: 'buttons'},
     button('Draw a profile line', () => { draft.begin('Profile'); }), button('Clear', () => { draft.cancel(); profile.clear(); }, {class: 'small'})),
-    state, points, h('div', {class: 'buttons'}, ask), plot, facts,
-    h('p', {class: 'soft'}, 'To see the ground as it was too, compare with a version in History.'));
+    state, points, h('div', {class: 'buttons'}, ask), beside, plot, facts);
 }
 
 function draw(length: number, now: [number, number][][], before: [number, number][][], unit: string): SVGElement {
@@ -58,10 +65,10 @@ function draw(length: number, now: [number, number][][], before: [number, number
   const out = svg('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-label': `Section of ${brief(length)} ${unit}, from ${brief(low)} to ${brief(high)} ${unit}`});
   const step = contourStep((high - low) * 3);
   for (let z = Math.ceil(low / step) * step; z <= high; z += step) {
-    out.append(svg('line', {x1: LEFT, x2: WIDTH - 8, y1: y(z), y2: y(z), class: 'grid'}), svg('text', {x: LEFT - 6, y: y(z) + 3.5, 'text-anchor': 'end'}, brief(z)));
+    out.append(svg('line', {x1: LEFT, x2: WIDTH - 8, y1: y(z), y2: y(z), class: 'grid'}), svg('text', {x: LEFT - 6, y: y(z) + 3.5, 'text-anchor': 'end'}, number(z, Math.max(0, -Math.floor(Math.log10(step))))));
   }
   const along = contourStep(length * 3);
-  for (let d = 0; d <= length; d += along) out.append(svg('text', {x: x(d), y: HEIGHT - 8, 'text-anchor': d === 0 ? 'start' : 'middle'}, d === 0 ? `0 ${unit}` : brief(d)));
+  for (let d = 0; d <= length; d += along) out.append(svg('text', {x: x(d), y: HEIGHT - 8, 'text-anchor': d === 0 ? 'start' : 'middle'}, d === 0 ? `0 ${unit}` : number(d, Math.max(0, -Math.floor(Math.log10(along))))));
   for (const stretch of now) out.append(svg('path', {class: 'fill', d: `${path(stretch)}L${x(stretch[stretch.length - 1][0])} ${HEIGHT - BOTTOM}L${x(stretch[0][0])} ${HEIGHT - BOTTOM}Z`}));
   for (const stretch of before) out.append(svg('path', {class: 'before', d: path(stretch)}));
   for (const stretch of now) out.append(svg('path', {class: 'now', d: path(stretch)}));

@@ -8,9 +8,10 @@ import {PATTERNS} from '../shaders';
 import {areaText, brief, button, bytesText, field, figures, h, input, number, select, shortUnit} from '../ui';
 import type {View} from '../view';
 
-export function swatch(id: string) {
+export function swatch(id: string, isRegion: boolean) {
   const look = lookOf(id);
-  const element = h('span', {class: `swatch ${PATTERNS[look.pattern]}`, title: `pattern: ${PATTERNS[look.pattern]}`});
+  const pattern = isRegion ? PATTERNS[look.pattern] : 'line';
+  const element = h('span', {class: `swatch ${pattern}`, title: isRegion ? `pattern: ${pattern}` : ''});
   element.style.setProperty('--colour', look.colour);
   return element;
 }
@@ -31,11 +32,11 @@ export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElemen
         app.selected = id;
         app.tell('selection');
         app.say(`Region ${id} selected.`);
-      }, {class: 'row', 'aria-pressed': String(id === app.selected)}), h('small', {}, region ? areaText(region.plan_area, app.session!.unit) : feature.geometry?.type ?? ''));
+      }, {class: 'row', 'aria-pressed': String(id === app.selected)}), h('small', {}, region ? areaText(region.plan_area, app.session!.unit) : /Point/.test(feature.geometry?.type ?? '') ? 'point' : 'line'));
     }));
     [...list.querySelectorAll('button')].forEach((element, i) => {
       const {id} = app.features[i].tinsmith;
-      element.append(swatch(id), titleOf(app, id));
+      element.append(swatch(id, areas.has(id)), h('span', {}, titleOf(app, id)));
     });
     const region = app.selected ? areas.get(app.selected) : undefined;
     chosen.hidden = !region;
@@ -91,9 +92,13 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     edit.forget();
   };
   const box = h('div');
+  let shown = '';
   app.on(['selection'], () => {
     const region = app.regions.find((one) => one.polygon === app.selected);
-    if (!region) return;
+    const name = region ? `${app.session?.id} ${region.polygon}` : '';
+    // What was typed stays while the region does.
+    if (!region || name === shown) { shown = name; return; }
+    shown = name;
     // The mean of the corners is where the ground is; a level near it is what people try first.
     let sum = 0;
     for (const t of region.triangles) for (let k = 0; k < 3; ++k) sum += app.mesh.positions[3 * app.mesh.corners[3 * t + k] + 2];

@@ -2,7 +2,7 @@
 // Which terrain: choose, load, copy, delete.
 import type {App} from '../app';
 import {TERRAIN_ENDINGS, type Upload} from '../upload';
-import {areaText, brief, button, bytesText, byId, figures, h, number, shortUnit} from '../ui';
+import {areaText, brief, button, bytesText, byId, field, figures, h, input, number, select, shortUnit} from '../ui';
 
 export function buildTerrain(app: App, upload: Upload, take: (file: File) => void): HTMLElement {
   const file = h('input', {type: 'file', hidden: true, id: 'file', accept: `${TERRAIN_ENDINGS},.geojson`, onchange: () => {
@@ -13,6 +13,7 @@ export function buildTerrain(app: App, upload: Upload, take: (file: File) => voi
   const told = h('span');
   const progress = h('div', {class: 'progress', hidden: true}, told, bar, button('Stop', () => { void upload.stop(); }, {class: 'small'}));
   const facts = h('div');
+  const title = h('h2', {}, 'Sessions');
   const list = h('ul', {class: 'sessions'});
   const sure = h('div', {class: 'buttons', hidden: true});
   const actions = h('div', {class: 'buttons'},
@@ -42,14 +43,28 @@ export function buildTerrain(app: App, upload: Upload, take: (file: File) => voi
       ['Vertices', number(s.vertices)], ['Triangles', number(s.triangles)], ['System', s.crs || 'none given'], ['Unit', s.unit],
       ['Extent', `${brief(x1 - x0)} × ${brief(y1 - y0)} ${u}`], ['Plan area', `${areaText((x1 - x0) * (y1 - y0), s.unit)} (box)`],
       ['Elevations', `${brief(z0)} to ${brief(z1)} ${u}`], ['In memory', bytesText(s.memory_bytes)]]));
+    const said = [...(s.repairs ?? []).map(({code, count}) => `${code.toLowerCase().replaceAll('_', ' ')}: ${number(count)}`), ...(s.notes ?? [])];
+    if (said.length) facts.append(h('ul', {class: 'notes', 'aria-label': 'Said of the file'}, ...said.map((text) => h('li', {}, text))));
   });
   app.on(['sessions', 'session'], () => {
-    list.replaceChildren(...app.sessions.map((s) => h('li', {}, button(s.name ? `${s.id} – ${s.name}` : s.id,
-      () => { void app.attempt(() => app.open(s.id)); }, {class: 'row', 'aria-current': s.id === app.session?.id ? 'true' : false}),
+    title.hidden = app.sessions.length === 0;
+    list.replaceChildren(...app.sessions.map((s) => h('li', {}, h('button', {type: 'button', class: 'row', title: s.id, 'aria-current': s.id === app.session?.id ? 'true' : false,
+      onclick: () => { void app.attempt(() => app.open(s.id)); }}, h('span', {}, s.name ? `${s.name} – ${s.id}` : s.id)),
       h('small', {}, `${number(s.triangles)} triangles`))));
   });
   return h('div', {}, h('div', {class: 'buttons'},
     button('Load a terrain…', () => { byId('file').click(); }, {class: 'main'}), file),
-    h('p', {class: 'soft'}, 'Or drop a file on the map: GeoTIFF, JSON mesh or grid, and what else this server reads.'),
-    progress, h('h2', {}, 'Sessions'), list, actions, sure, facts);
+    h('p', {class: 'soft'}, 'Or drop a file on this page: GeoTIFF, ESRI grid, GLB or glTF, LandXML, OBJ, CSV points, JSON.'),
+    buildLoading(upload), progress, title, list, actions, sure, facts);
+}
+
+/** What the bytes of a file do not say. */
+function buildLoading(upload: Upload): HTMLElement {
+  const {options} = upload;
+  const set = (name: keyof Upload['options']) => (value: string) => { options[name] = value.trim(); };
+  return h('details', {id: 'loading'}, h('summary', {}, 'Options of loading'), h('div', {class: 'fields'},
+    field('System', input('', set('crs'), {placeholder: 'EPSG:32616', inputmode: 'text'}), 'where the file names none'),
+    field('Degrees', select([['', 'refuse'], ['auto', 'project to UTM']], '', set('project'))),
+    field('Unit', select([['', 'as the file says'], ['metre', 'metre'], ['foot', 'foot'], ['US survey foot', 'US survey foot']], '', set('unit'))),
+    field('Faults', select([['', 'refuse'], ['true', 'repair what can be']], '', set('repair')))));
 }
