@@ -12,13 +12,14 @@ namespace tinsmith::e2e {
 /// A client that keeps its connection as long as the server does.
 class SteadyClient {
   public:
-    explicit SteadyClient(int port) : port_(port) {}
+    explicit SteadyClient(int port, int longest_seconds = 10)
+        : port_(port), longest_seconds_(longest_seconds) {}
 
     /// One request, once: status 0 where no answer came, also where the server had just closed a
     /// connection that idled.
     Answer try_once(const std::string& method, const std::string& target,
                     const std::vector<std::string>& headers = {}, const std::string& body = {}) {
-        if (!connection_) connection_ = std::make_unique<Connection>(port_);
+        if (!connection_) connection_ = std::make_unique<Connection>(port_, longest_seconds_);
         connection_->send(request_text(method, target, headers, body));
         Answer answer = connection_->read(method == "HEAD");
         if (answer.status == 0 || answer.header("connection") == "close") connection_.reset();
@@ -43,6 +44,7 @@ class SteadyClient {
 
   private:
     int port_;
+    int longest_seconds_;
     std::unique_ptr<Connection> connection_;
 };
 
