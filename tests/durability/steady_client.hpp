@@ -12,7 +12,7 @@ namespace tinsmith::e2e {
 /// A client that keeps its connection as long as the server does.
 class SteadyClient {
   public:
-    explicit SteadyClient(int port, int longest_seconds = 10)
+    explicit SteadyClient(int port, int longest_seconds = 60)
         : port_(port), longest_seconds_(longest_seconds) {}
 
     /// One request, once: status 0 where no answer came, also where the server had just closed a
