@@ -21,13 +21,21 @@ std::string renamed(std::string text, const std::string& from, const std::string
     return text;
 }
 
+/// Some of the text around a place, to be read by people.
+std::string around(const std::string& text, std::size_t place) {
+    std::string part =
+        text.substr(std::min(place - std::min<std::size_t>(place, 60), text.size()), 120);
+    for (char& c : part)
+        if (c < ' ' || c > '~') c = '.';
+    return '"' + part + '"';
+}
+
 std::string first_difference(const std::string& one, const std::string& other) {
-    const auto at = std::mismatch(one.begin(), one.end(), other.begin(), other.end()).first;
+    const auto length = static_cast<std::ptrdiff_t>(std::min(one.size(), other.size()));
+    const auto at = std::mismatch(one.begin(), one.begin() + length, other.begin()).first;
     const auto place = static_cast<std::size_t>(at - one.begin());
-    const std::size_t start = place > 60 ? place - 60 : 0;
     return std::to_string(one.size()) + " and " + std::to_string(other.size()) + " bytes, at " +
-           std::to_string(place) + ": \"" + one.substr(start, 120) + "\" and \"" +
-           other.substr(start, 120) + "\"";
+           std::to_string(place) + ": " + around(one, place) + " and " + around(other, place);
 }
 
 }  // namespace
