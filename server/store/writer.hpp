@@ -82,7 +82,7 @@ class Writer {
     void set_side_work_due();
     void add_idle(Idle idle);
 
-    void commit_group(std::vector<TaskPtr> group, SideWork side_work);
+    bool commit_group(std::vector<TaskPtr> group, SideWork side_work);
     void commit_apart(std::vector<TaskPtr>& group);
     void commit_large(TaskPtr task);
     void drop_a_piece();
