@@ -9,8 +9,8 @@
 namespace tinsmith::server {
 
 std::string random_hex(std::size_t bytes) {
-    // getrandom(2) or the processor's own generator. To open it asks the processor what it is, which
-    // takes long in a virtual machine.
+    // getrandom(2) or the processor's own generator. To open it asks the processor what it is,
+    // which takes long in a virtual machine.
     thread_local std::random_device source;
     std::string out(bytes, '\0');
     for (char& byte : out)
