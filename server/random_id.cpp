@@ -9,7 +9,9 @@
 namespace tinsmith::server {
 
 std::string random_hex(std::size_t bytes) {
-    std::random_device source;  // getrandom(2) or the processor's own generator
+    // getrandom(2) or the processor's own generator. To open it asks the processor what it is,
+    // which takes long in a virtual machine.
+    thread_local std::random_device source;
     std::string out(bytes, '\0');
     for (char& byte : out)
         byte = static_cast<char>(source() & 0xffU);

@@ -66,6 +66,8 @@ bool SessionKeeper::snapshot(const std::string& id) {
     try {
         services_.sessions.snapshot(id);
         return true;
+    } catch (const SessionIsGone&) {
+        return true;  // removed in the meantime
     } catch (const std::bad_alloc&) {
         log_event(LogLevel::Warning, "snapshot_failed",
                   "no memory to store session \"" + id + "\" now");

@@ -2,6 +2,9 @@
 #include "server/session_vault.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <iterator>
+#include <mutex>
 #include <utility>
 
 #include "core/algorithm.hpp"
@@ -83,6 +86,24 @@ class SessionVault::Log : public ChangeLog {
         const std::size_t bytes = entry.body.size() + entry.view.size();
         require(vault_.journal_->append(std::move(entry)));
         add(bytes, change.seconds);
+        if (!key.key.empty()) add_keyed({change.counts.version, key.key, key.print});
+    }
+
+    /// A change whose key the journal knows by its entry alone, perhaps.
+    void add_keyed(KeyedChange change) {
+        const std::lock_guard lock(mutex_);
+        keyed_.push_back(std::move(change));
+    }
+
+    /// Those up to a version, oldest first, which leave the list.
+    std::vector<KeyedChange> take_keyed(std::uint64_t version) {
+        const std::lock_guard lock(mutex_);
+        const auto end = std::ranges::find_if(
+            keyed_, [version](const KeyedChange& change) { return change.version > version; });
+        std::vector<KeyedChange> taken(std::make_move_iterator(keyed_.begin()),
+                                       std::make_move_iterator(end));
+        keyed_.erase(keyed_.begin(), end);
+        return taken;
     }
 
     void add(std::size_t bytes, double seconds) {
@@ -120,6 +141,8 @@ class SessionVault::Log : public ChangeLog {
     std::atomic<std::size_t> bytes_{0};
     std::atomic<double> seconds_{0.0};
     std::atomic<bool> is_told_{false};
+    std::mutex mutex_;
+    std::deque<KeyedChange> keyed_;  ///< since the snapshot, oldest first
 };
 
 std::variant<std::unique_ptr<SessionVault>, std::string> SessionVault::open(
@@ -213,8 +236,9 @@ LoadedSession SessionVault::load(const std::string& birth) {
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
         log->add(entry.body.size() + entry.view.size(), took.count());
         ++loaded.repeated;
-        if (!entry.key.empty())
-            loaded.keyed.push_back({entry.version, std::move(entry.key), std::move(entry.print)});
+        if (entry.key.empty()) continue;
+        loaded.keyed.push_back({entry.version, std::move(entry.key), std::move(entry.print)});
+        log->add_keyed(loaded.keyed.back());
     }
     loaded.session->start_log(log);
     return loaded;
@@ -223,6 +247,19 @@ LoadedSession SessionVault::load(const std::string& birth) {
 void SessionVault::remove(const std::string& birth) {
     const auto committed = journal_->remove(birth);
     if (committed && committed->kind != JournalFault::Kind::Gone) throw_fault(*committed);
+}
+
+/// The entries that a snapshot makes superfluous tell of the keys of their changes: where no answer
+/// was stored, as of one too large or not made yet, nothing else does. What is kept here is durable
+/// with the snapshot at the latest. Where that fails, they are kept for nothing.
+void SessionVault::keep_keys(const Session& session, const std::vector<KeyedChange>& changes) {
+    if (!answer_of) return;
+    for (const KeyedChange& change : changes) {
+        if (auto answer = answer_of(session, change.version)) {
+            journal_->keep_answer({session.facts().birth, change.key, change.print, unix_seconds(),
+                                   std::move(*answer)});
+        }
+    }
 }
 
 void SessionVault::snapshot(const Session& session) {
@@ -237,6 +274,7 @@ void SessionVault::snapshot(const Session& session) {
             head = head_of(image, session.counts());
             bytes = pack(image);
         }
+        keep_keys(session, log->take_keyed(head.version));
         require(journal_->write_snapshot(session.facts().birth, head, bytes));
     } catch (...) {
         log->give_back(tail);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -87,6 +88,12 @@ class SessionVault {
     /// for each. Set before the first session.
     std::function<void(const std::string& id)> when_due;
 
+    /// The answer that is stored for the key of a change, before a snapshot takes the place of the
+    /// entry that has that key; nothing: the key is forgotten with the process. Set before the
+    /// first session.
+    std::function<std::optional<std::string>(const Session& session, std::uint64_t version)>
+        answer_of;
+
     Journal& journal() { return *journal_; }
     const Journal& journal() const { return *journal_; }
 
@@ -94,6 +101,7 @@ class SessionVault {
     class Log;
     SessionVault(std::unique_ptr<Journal> journal, HistoryLimits history, TailBounds tail);
     std::shared_ptr<Log> log_of(const SessionFacts& facts);
+    void keep_keys(const Session& session, const std::vector<KeyedChange>& changes);
 
     std::unique_ptr<Journal> journal_;
     const HistoryLimits history_;

@@ -13,6 +13,8 @@ StopSignals::StopSignals() {
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    // A file that may not grow (ulimit -f) is an error of the write, as a full disk is.
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void StopSignals::wait() const {

@@ -14,7 +14,7 @@ namespace tinsmith::server {
 inline constexpr std::chrono::seconds kLastWait{5};
 
 /// SIGINT and SIGTERM, taken off every thread that is started later so that only `wait` meets
-/// them: no code of ours runs in a signal handler.
+/// them: no code of ours runs in a signal handler. SIGXFSZ is ignored.
 class StopSignals {
   public:
     StopSignals();

@@ -41,6 +41,15 @@ void store_answers(Services& services) {
         pack(answer);
         journal.keep_answer({name.first, name.second, print, unix_seconds(), pack.take()});
     };
+    services.vault->answer_of = [](const Session& session,
+                                   std::uint64_t version) -> std::optional<std::string> {
+        const auto copy = session.change_at(version);
+        const auto* change = std::get_if<ChangeCopy>(&copy);
+        if (change == nullptr) return std::nullopt;
+        Packer pack;
+        pack(tell_change(session, *change));
+        return pack.take();
+    };
     services.sessions.when_loaded = [&services](const LoadedSession& loaded) {
         const Session& session = *loaded.session;
         for (const auto& [version, key, print] : loaded.keyed) {

@@ -171,23 +171,28 @@ void Writer::do_turn(std::unique_lock<std::mutex>& lock) {
     std::vector<TaskPtr> group = take_group();
     SideWork side_work;
     const bool is_due = side_work_due_ && (closing || Clock::now() >= *side_work_due_);
-    if (!group.empty() || (is_due && !pulse_.is_failing())) {
-        side_work = std::exchange(side_work_, {});
-        side_work_due_.reset();
-    }
     TaskPtr large;
     if (!large_.empty()) {
         large = std::move(large_.front());
         large_.pop_front();
+    }
+    if (!group.empty() || large || (is_due && !pulse_.is_failing())) {
+        side_work = std::exchange(side_work_, {});
+        side_work_due_.reset();
     }
     const bool has_idle = !idle_.empty();
     lock.unlock();
     room_.notify_all();
 
     const bool has_waiting = !group.empty() || large;
-    if (!group.empty() || !side_work.empty()) commit_group(std::move(group), std::move(side_work));
+    bool is_aside_done = true;
+    if (!group.empty() || !side_work.empty())
+        is_aside_done = commit_group(std::move(group), std::move(side_work));
     checkpoint();
-    if (large) {
+    // What a snapshot makes superfluous has its keys among the answers: they come first.
+    if (large && !is_aside_done) {
+        large->done.set_value(JournalFault{JournalFault::Kind::Io, pulse_.health().why});
+    } else if (large) {
         commit_large(std::move(large));
         checkpoint();
     }

@@ -83,7 +83,7 @@ class Writer {
     void set_side_work_due();
     void add_idle(Idle idle);
 
-    void commit_group(std::vector<TaskPtr> group, SideWork side_work);
+    bool commit_group(std::vector<TaskPtr> group, SideWork side_work);
     void commit_apart(std::vector<TaskPtr>& group);
     bool move_session(const std::string& birth);
     void commit_large(TaskPtr task);

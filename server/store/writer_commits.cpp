@@ -87,7 +87,8 @@ Result Writer::transact(std::size_t entries, std::size_t bytes,
     return fault;
 }
 
-void Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
+/// Whether the side work needs no further care.
+bool Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
     Result fault = commit_tasks(group, &side_work);
     if (fault && fault->is_of_rows()) {
         commit_apart(group);
@@ -106,10 +107,11 @@ void Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
     }
     for (const TaskPtr& task : group)
         task->done.set_value(std::move(task->refusal));
-    if (!fault || side_work.empty()) return;
+    if (!fault || side_work.empty()) return true;
     const std::lock_guard lock(mutex_);
     side_work_.put_back(std::move(side_work));
     set_side_work_due();
+    return false;
 }
 
 /// The tasks of one session in a transaction, those of the next one in another: so that the session

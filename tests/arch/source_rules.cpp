@@ -34,7 +34,7 @@ struct Home {
     const char* files;    ///< regular expression for the files that may include it
     bool one_file_only;
 };
-const std::array<Home, 16> kHomes = {{
+const std::array<Home, 17> kHomes = {{
     {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http_server\.cpp)", true},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},

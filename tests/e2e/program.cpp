@@ -35,7 +35,8 @@ bool becomes_true(Condition condition, std::chrono::seconds longest) {
 
 [[noreturn]] void become(const std::vector<std::string>& arguments, int output) {
     std::vector<char*> argv;
-    std::string program = TINSMITH_BINARY;
+    const char* other = std::getenv("TINSMITH_PROGRAM");
+    std::string program = other != nullptr ? other : TINSMITH_BINARY;
     argv.push_back(program.data());
     std::vector<std::string> copies = arguments;
     for (std::string& argument : copies)
@@ -102,6 +103,20 @@ std::optional<int> Program::wait(std::chrono::seconds longest) {
     return exit_code_;
 }
 
+std::string complaints_in(const std::string& log) {
+    std::string complaints;
+    std::size_t start = 0;
+    for (std::size_t end = 0; (end = log.find('\n', start)) != std::string::npos; start = end + 1) {
+        const std::string line = log.substr(start, end - start);
+        // Sanitizers write lines of their own.
+        const auto event = nlohmann::json::parse(line, nullptr, false);
+        const bool is_event = event.is_object() && event.contains("level");
+        if (!is_event || (event["level"] != "info" && event["level"] != "debug"))
+            complaints += line + "\n";
+    }
+    return complaints;
+}
+
 ServerUnderTest::ServerUnderTest(std::vector<std::string> arguments) {
     const std::string port_file = scratch_.file("port");
     arguments.insert(arguments.begin(), {"serve", "--port", "0", "--port-file", port_file});
@@ -125,15 +140,7 @@ std::string ServerUnderTest::stop() {
     if (code != 0) {
         complaints += code ? "exit code " + std::to_string(*code) + "\n" : "does not stop\n";
     }
-    std::istringstream log(program_->output());
-    for (std::string line; std::getline(log, line);) {
-        // Sanitizers write lines of their own.
-        const auto event = nlohmann::json::parse(line, nullptr, false);
-        const bool is_event = event.is_object() && event.contains("level");
-        if (!is_event || (event["level"] != "info" && event["level"] != "debug"))
-            complaints += line + "\n";
-    }
-    return complaints;
+    return complaints + complaints_in(program_->output());
 }
 
 }  // namespace tinsmith::e2e

@@ -28,8 +28,11 @@ class ScratchDirectory {
 std::string content_of(const std::string& path);
 void write_content(const std::string& path, const std::string& content);
 
+/// The whole lines of a log that warn or complain, or are no events. Empty: all is well.
+std::string complaints_in(const std::string& log);
+
 /// The real binary as a child process, both of its outputs in one file. It does not outlive the
-/// object.
+/// object. The environment's TINSMITH_PROGRAM is another binary, such as one with sanitizers.
 class Program {
   public:
     Program(std::vector<std::string> arguments, const std::string& output);
@@ -38,6 +41,7 @@ class Program {
     Program& operator=(const Program&) = delete;
 
     void send_signal(int signal) const;
+    pid_t pid() const { return pid_; }
 
     bool is_running();
 

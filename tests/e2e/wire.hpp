@@ -25,10 +25,10 @@ struct Answer {
 };
 
 /// A connection to 127.0.0.1, with a reader of HTTP/1.1 of our own: what is tested is not also
-/// the judge. Every read gives up after ten seconds.
+/// the judge. Every read gives up after so many seconds.
 class Connection {
   public:
-    explicit Connection(int port);
+    explicit Connection(int port, int longest_seconds = 10);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -42,7 +42,7 @@ class Connection {
     /// The next answer. `to_head`: it has no body whatever its headers say.
     Answer read(bool to_head = false);
 
-    /// Waits for the end of the connection. False: bytes came instead, or nothing for ten seconds.
+    /// Waits for the end of the connection. False: bytes came instead, or nothing for that long.
     bool is_closed();
 
   private:
