@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-#include "core/algorithm.hpp"
+#include "core/types/algorithm.hpp"
 #include "server/archive/session_archive.hpp"
 #include "server/mesh_digest.hpp"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <thread>
 
-#include "core/algorithm.hpp"
+#include "core/types/algorithm.hpp"
 #include "server/archive/session_archive.hpp"
 #include "server/routes/restored_answers.hpp"
 #include "server/session_keeper.hpp"
