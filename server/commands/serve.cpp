@@ -213,7 +213,7 @@ int run_serve(const ServeConfig& config) {
             return health.why;
         });
     } else {
-        log_event(LogLevel::Warning, "not_durable",
+        log_event(LogLevel::Info, "not_durable",
                   "sessions live in memory alone and end with this process; --data stores them");
     }
     const Router router(make_routes(services), &services.metrics);
