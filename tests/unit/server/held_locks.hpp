@@ -40,21 +40,22 @@ class EditOf {
     std::unique_lock<std::shared_mutex> mesh_;
 };
 
-/// Every lock that the services of a process and this session have.
+/// Every lock that the services of a process and this session have, in the order in which the code
+/// takes them.
 class AllLocksOf {
   public:
     AllLocksOf(Services& services, Session& session)
         : edit_(session),
-          view_(session.*lock_of(ViewLock{})),
           store_(services.sessions.*lock_of(StoreLock{})),
+          view_(session.*lock_of(ViewLock{})),
           meshes_(services.meshes.*lock_of(CacheLock{})),
           answers_(services.answers.*lock_of(AnswersLock{})),
           jobs_(services.jobs.*lock_of(JobsLock{})) {}
 
   private:
     EditOf edit_;
-    std::unique_lock<std::mutex> view_;
     std::unique_lock<std::shared_mutex> store_;
+    std::unique_lock<std::mutex> view_;
     std::unique_lock<std::mutex> meshes_;
     std::unique_lock<std::mutex> answers_;
     std::unique_lock<std::mutex> jobs_;
