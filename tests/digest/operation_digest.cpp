@@ -19,6 +19,7 @@
 #include "core/integrate/lock.hpp"
 #include "core/mesh/build.hpp"
 #include "core/regions/region.hpp"
+#include "core/types/algorithm.hpp"
 #include "tests/digest/bundled.hpp"
 #include "tests/digest/dice.hpp"
 #include "tests/digest/fnv.hpp"
@@ -287,7 +288,8 @@ int main(int count, char** arguments) {
         std::fprintf(stderr, "the bundled polygons cannot be read\n");
         return 1;
     }
-    std::printf("%016llx %zu operations, %zu of them refused\n",
+    std::printf("algorithm %u: %016llx %zu operations, %zu of them refused\n",
+                static_cast<unsigned>(tinsmith::core::kAlgorithm),
                 static_cast<unsigned long long>(run.digest()), run.operations(), run.refused());
     return run.good() ? 0 : 1;
 }
