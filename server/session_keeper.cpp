@@ -6,18 +6,13 @@
 #include <utility>
 
 #include "server/log.hpp"
+#include "server/unix_time.hpp"
 
 namespace tinsmith::server {
 
 namespace {
 
 constexpr std::chrono::seconds kBetweenRounds{1};
-
-std::int64_t unix_seconds() {
-    using std::chrono::system_clock;
-    return std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch())
-        .count();
-}
 
 }  // namespace
 

@@ -6,18 +6,9 @@
 #include <utility>
 
 #include "server/random_id.hpp"
+#include "server/unix_time.hpp"
 
 namespace tinsmith::server {
-
-namespace {
-
-std::int64_t unix_seconds() {
-    using std::chrono::system_clock;
-    return std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch())
-        .count();
-}
-
-}  // namespace
 
 SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
                                       std::optional<std::string> id) {

@@ -10,16 +10,11 @@
 #include "core/types/algorithm.hpp"
 #include "server/archive/session_archive.hpp"
 #include "server/mesh_digest.hpp"
+#include "server/unix_time.hpp"
 
 namespace tinsmith::server {
 
 namespace {
-
-std::int64_t unix_seconds() {
-    using std::chrono::system_clock;
-    return std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch())
-        .count();
-}
 
 [[noreturn]] void throw_fault(const JournalFault& fault) {
     switch (fault.kind) {

@@ -6,6 +6,7 @@
 #include "server/archive/packing.hpp"
 #include "server/routes/handlers.hpp"
 #include "server/routes/route_support.hpp"
+#include "server/unix_time.hpp"
 
 namespace tinsmith::server {
 
@@ -22,12 +23,6 @@ constexpr int kAccepted = 202;
 /// A larger one is told as its report once the process that sent it has ended.
 constexpr std::size_t kLargestStored = std::size_t{256} << 10;
 constexpr std::chrono::hours kAge{24};
-
-std::int64_t unix_seconds() {
-    using std::chrono::system_clock;
-    return std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch())
-        .count();
-}
 
 }  // namespace
 
