@@ -46,6 +46,9 @@ constexpr const char* kIntegrateFooter =
     "  tinsmith integrate terrain.tif lake.geojson -o out.glb --report report.json\n"
     "  tinsmith integrate mesh.json road.geojson -o out.glb --elevation own --snap 0.05";
 
+/// A hundred years: beyond, times are no times any more.
+constexpr std::uint64_t kLongestLife = std::uint64_t{100} * 365 * 24 * 3600;
+
 /// "max_body_bytes" as a flag, "--max-body-bytes".
 std::string flag_of(std::string name) {
     std::replace(name.begin(), name.end(), '_', '-');
@@ -121,7 +124,8 @@ void add_limits(CLI::App& app, Limits& limits) {
         ->transform(digit_first());
     add("session_ttl", limits.session_ttl,
         "Seconds for which a session lives that nobody asks for; 0: for ever")
-        ->check(digit_first());
+        ->check(digit_first())
+        ->check(CLI::Range(std::uint64_t{0}, kLongestLife));
     add("kept_answers", limits.kept_answers, "Bytes of answers to keep for retries by key")
         ->transform(bytes)
         ->transform(digit_first());

@@ -51,11 +51,14 @@ std::optional<std::string> Session::repeat(const ChangeAsked& asked, std::uint64
         if (std::holds_alternative<ChangeResult>(outcome)) return {};
         return "cannot be done again";
     };
+    const Stopwatch watch;
+    RunLimits limits;  // none, but the times that reports tell are those of this run
+    limits.clock_ms = [&watch] { return watch.seconds() * 1e3; };
     std::string fault;
     if (const auto* perform_it = std::get_if<PerformAsked>(&asked)) {
         const auto lock = lock_to_write();
         const auto applied =
-            perform(perform_it->operation, perform_it->kind, perform_it->polygons, {});
+            perform(perform_it->operation, perform_it->kind, perform_it->polygons, limits);
         if (!applied) fault = applied.errors().front().detail;
         if (perform_it->kind == ChangeKind::Polygons) next_polygon_ += perform_it->polygons.size();
         refresh_view();

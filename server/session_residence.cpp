@@ -78,19 +78,16 @@ bool SessionStore::make_room(std::size_t bytes, Freed& freed) {
 }
 
 std::optional<api::SessionView> SessionStore::remove_damaged(const std::string& id) {
-    std::string birth;
+    EntryPtr going;
     api::SessionView last;
     {
-        const std::shared_lock lock(mutex_);
+        const std::unique_lock lock(mutex_);
         const auto found = entries_.find(id);
         if (found == entries_.end() || found->second->damage.empty()) return std::nullopt;
-        birth = found->second->facts.birth;
         last = view_of_entry(*found->second);
+        going = hold_back(found);
     }
-    vault_->remove(birth);
-    const std::unique_lock lock(mutex_);
-    const auto found = entries_.find(id);
-    if (found != entries_.end() && found->second->facts.birth == birth) entries_.erase(found);
+    forget_held_back(id, going);
     return last;
 }
 
@@ -98,27 +95,22 @@ std::vector<std::string> SessionStore::remove_unused_since(std::int64_t unix_sec
     std::vector<std::pair<std::string, EntryPtr>> unused;
     {
         const std::unique_lock lock(mutex_);
-        for (auto entry = entries_.begin(); entry != entries_.end();) {
-            const EntryPtr& held = entry->second;
-            const bool is_idle = !held->is_being_made && held->damage.empty() &&
-                                 (!held->session || held->session.use_count() == 1);
-            if (is_idle && held->used < unix_seconds) {
-                unused.emplace_back(entry->first, std::move(entry->second));
-                entry = entries_.erase(entry);
-            } else {
-                ++entry;
-            }
+        for (auto place = entries_.begin(); place != entries_.end(); ++place) {
+            const Entry& entry = *place->second;
+            const bool is_idle = !entry.is_being_made && entry.damage.empty() &&
+                                 (!entry.session || entry.session.use_count() == 1);
+            if (!is_idle || last_use(entry) >= unix_seconds) continue;
+            unused.emplace_back(place->first, nullptr);
+            unused.back().second = hold_back(place);
         }
     }
     std::vector<std::string> births;
-    for (auto& [id, entry] : unused) {
-        births.push_back(entry->facts.birth);
+    for (const auto& [id, entry] : unused) {
         try {
-            if (vault_ != nullptr) vault_->remove(entry->facts.birth);
+            forget_held_back(id, entry);
+            births.push_back(entry->facts.birth);
         } catch (const StorageFault&) {
-            const std::unique_lock lock(mutex_);
-            entries_.emplace(id, entry);  // another time
-            births.pop_back();
+            continue;  // another time
         }
     }
     return births;

@@ -45,8 +45,7 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
     try {
         if (vault_ != nullptr) vault_->create(*session);
     } catch (...) {
-        const std::unique_lock lock(mutex_);
-        entries_.erase(id);
+        let_go(id);
         throw;
     }
     const std::unique_lock lock(mutex_);
@@ -98,38 +97,49 @@ api::SessionView SessionStore::view_of_entry(const Entry& entry) const {
         entry.session ? entry.session->view() : view_of(entry.facts, entry.counts);
     if (!entry.damage.empty()) view.notes.push_back("Out of service: " + entry.damage);
     if (limits_.session_ttl > 0)
-        view.expires = entry.used + static_cast<std::int64_t>(limits_.session_ttl);
+        view.expires = last_use(entry) + static_cast<std::int64_t>(limits_.session_ttl);
     return view;
 }
 
 Removal SessionStore::remove(const Session& session, std::optional<std::uint64_t> expected) {
-    EntryPtr going;  // freed after the lock: a mesh is large
     const std::string& id = session.facts().id;
+    EntryPtr going;  // freed after the lock: a mesh is large
     {
         const std::unique_lock lock(mutex_);
         const auto found = entries_.find(id);
         if (found == entries_.end() || found->second->session.get() != &session)
             return Removal::Gone;
         if (expected && *expected != session.view().version) return Removal::OtherVersion;
-        going = std::move(found->second);
-        if (vault_ == nullptr) {
-            entries_.erase(found);
-            return Removal::Done;
-        }
-        // The id stays taken, and nobody finds it, until the disk knows.
-        found->second = std::make_shared<Entry>();
-        found->second->is_being_made = true;
+        going = hold_back(found);
     }
-    try {
-        vault_->remove(session.facts().birth);
-    } catch (...) {
-        const std::unique_lock lock(mutex_);
-        entries_[id] = going;
-        throw;
-    }
+    forget_held_back(id, going);
+    return Removal::Done;
+}
+
+SessionStore::EntryPtr SessionStore::hold_back(Entries::iterator place) {
+    auto nobodys = std::make_shared<Entry>();
+    nobodys->is_being_made = true;
+    return std::exchange(place->second, std::move(nobodys));
+}
+
+void SessionStore::let_go(const std::string& id) {
     const std::unique_lock lock(mutex_);
     entries_.erase(id);
-    return Removal::Done;
+}
+
+void SessionStore::put_back(const std::string& id, EntryPtr entry) {
+    const std::unique_lock lock(mutex_);
+    entries_.find(id)->second = std::move(entry);
+}
+
+void SessionStore::forget_held_back(const std::string& id, const EntryPtr& entry) {
+    try {
+        if (vault_ != nullptr) vault_->remove(entry->facts.birth);
+    } catch (...) {
+        put_back(id, entry);
+        throw;
+    }
+    let_go(id);
 }
 
 bool SessionStore::is_kept(const Session& session) const {
@@ -190,6 +200,10 @@ std::size_t SessionStore::sum_of_memory() const {
 
 void SessionStore::touch(Entry& entry) const {
     entry.used = unix_seconds();
+}
+
+std::int64_t SessionStore::last_use(const Entry& entry) const {
+    return std::max<std::int64_t>(entry.used, began_);
 }
 
 }  // namespace tinsmith::server

@@ -20,6 +20,7 @@
 #include "server/limits.hpp"
 #include "server/session.hpp"
 #include "server/session_vault.hpp"
+#include "server/unix_time.hpp"
 
 namespace tinsmith::server {
 
@@ -151,9 +152,21 @@ class SessionStore {
     std::size_t sum_of_memory() const;
     api::SessionView view_of_entry(const Entry& entry) const;
     void touch(Entry& entry) const;
+    /// When somebody asked for it last, as far as a time to live goes: what came of questions
+    /// before this process began is not on the disk, so that the start counts as one.
+    std::int64_t last_use(const Entry& entry) const;
+    /// Takes an entry out so that its id stays taken and nobody finds it, until `let_go` or
+    /// `put_back`. Requires: the lock, exclusive.
+    EntryPtr hold_back(Entries::iterator place);
+    void let_go(const std::string& id);
+    void put_back(const std::string& id, EntryPtr entry);
+    /// Has the vault forget what was held back; where it cannot, all is as before. Throws
+    /// StorageFault.
+    void forget_held_back(const std::string& id, const EntryPtr& entry);
 
     const Limits limits_;
     SessionVault* const vault_;
+    const std::int64_t began_ = unix_seconds();
     std::atomic<std::size_t> borrowed_{0};
     mutable std::shared_mutex mutex_;  ///< guards the map and its entries, not the sessions
     Entries entries_;

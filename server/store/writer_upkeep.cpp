@@ -7,6 +7,7 @@
 #include "server/log.hpp"
 #include "server/store/row_reader.hpp"
 #include "server/store/writer.hpp"
+#include "server/unix_time.hpp"
 
 namespace tinsmith::server::store {
 
@@ -85,11 +86,9 @@ void Writer::grow_log() {
 
 /// A small durable write: the disk takes commits again, or it does not.
 void Writer::probe() {
-    const auto now = std::chrono::duration_cast<std::chrono::seconds>(
-        std::chrono::system_clock::now().time_since_epoch());
-    transact(0, 0, [this, now]() -> Result {
+    transact(0, 0, [this]() -> Result {
         wrote_ = true;
-        return rows_->probe(now.count());
+        return rows_->probe(unix_seconds());
     });
 }
 
