@@ -77,6 +77,14 @@ std::uint64_t KeptAnswers::keep(const Name& name, const Response& answer) {
     return number;
 }
 
+std::optional<Response> KeptAnswers::find(const Name& name) const {
+    const std::lock_guard lock(mutex_);
+    const auto place = entries_.find(name);
+    if (place == entries_.end() || place->second.running || !place->second.whole)
+        return std::nullopt;
+    return place->second.answer;
+}
+
 void KeptAnswers::restore(const Name& name, const std::string& print, const Response& answer,
                           std::chrono::seconds age) {
     const std::lock_guard lock(mutex_);

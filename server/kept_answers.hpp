@@ -9,6 +9,7 @@
 #include <list>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -65,6 +66,8 @@ class KeptAnswers {
     /// Drops all of one scope, but for what is running.
     void forget(const std::string& scope);
 
+    /// The answer under that name; nothing where there is none, or not all of it.
+    std::optional<Response> find(const Name& name) const;
     /// Keeps an answer that was given so long ago, unless there is one under the name.
     void restore(const Name& name, const std::string& print, const Response& answer,
                  std::chrono::seconds age);

@@ -250,7 +250,7 @@ void SessionVault::remove(const std::string& birth) {
 void SessionVault::keep_keys(const Session& session, const std::vector<KeyedChange>& changes) {
     if (!answer_of) return;
     for (const KeyedChange& change : changes) {
-        if (auto answer = answer_of(session, change.version)) {
+        if (auto answer = answer_of(session, change)) {
             journal_->keep_answer({session.facts().birth, change.key, change.print, unix_seconds(),
                                    std::move(*answer)});
         }

@@ -91,7 +91,7 @@ class SessionVault {
     /// The answer that is stored for the key of a change, before a snapshot takes the place of the
     /// entry that has that key; nothing: the key is forgotten with the process. Set before the
     /// first session.
-    std::function<std::optional<std::string>(const Session& session, std::uint64_t version)>
+    std::function<std::optional<std::string>(const Session& session, const KeyedChange& change)>
         answer_of;
 
     Journal& journal() { return *journal_; }

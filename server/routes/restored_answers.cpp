@@ -24,26 +24,35 @@ constexpr int kAccepted = 202;
 constexpr std::size_t kLargestStored = std::size_t{256} << 10;
 constexpr std::chrono::hours kAge{24};
 
+/// A job ends with the process that promised it.
+bool is_stored(const Response& answer) {
+    return answer.status != kAccepted && answer.body.size() <= kLargestStored;
+}
+
+std::string packed(const Response& answer) {
+    Packer pack;
+    pack(answer);
+    return pack.take();
+}
+
 }  // namespace
 
 void store_answers(Services& services) {
     Journal& journal = services.vault->journal();
     services.answers.when_kept = [&journal](const KeptAnswers::Name& name, const std::string& print,
                                             const Response& answer) {
-        // A job ends with the process that promised it.
-        if (answer.status == kAccepted || answer.body.size() > kLargestStored) return;
-        Packer pack;
-        pack(answer);
-        journal.keep_answer({name.first, name.second, print, unix_seconds(), pack.take()});
+        if (is_stored(answer))
+            journal.keep_answer({name.first, name.second, print, unix_seconds(), packed(answer)});
     };
-    services.vault->answer_of = [](const Session& session,
-                                   std::uint64_t version) -> std::optional<std::string> {
-        const auto copy = session.change_at(version);
+    services.vault->answer_of = [&services](
+                                    const Session& session,
+                                    const KeyedChange& keyed) -> std::optional<std::string> {
+        const auto first = services.answers.find({session.facts().birth, keyed.key});
+        if (first && is_stored(*first)) return packed(*first);
+        const auto copy = session.change_at(keyed.version);
         const auto* change = std::get_if<ChangeCopy>(&copy);
         if (change == nullptr) return std::nullopt;
-        Packer pack;
-        pack(tell_change(session, *change));
-        return pack.take();
+        return packed(tell_change(session, *change));
     };
     services.sessions.when_loaded = [&services](const LoadedSession& loaded) {
         const Session& session = *loaded.session;

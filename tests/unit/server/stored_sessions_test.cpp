@@ -173,6 +173,20 @@ TEST_F(StoredSessions, AnswerRetriesOfTheLifeBefore) {
     EXPECT_EQ(life().services().sessions.size(), 2U);
 }
 
+TEST_F(StoredSessions, GiveTheFirstAnswerAgainAfterASnapshot) {
+    life().make("a");
+    std::vector<NameValue> as_glb{{"idempotency-key", "k-1"}, {"accept", "model/gltf-binary"}};
+    const Response first = life().cut("a", 2, as_glb);
+    EXPECT_EQ(first.content_type, "model/gltf-binary");
+    life().keeper().snapshot_all(steady_clock::time_point::max());
+    restart();
+    const Response again = life().cut("a", 2, as_glb);
+    EXPECT_EQ(Life::header_of(again, "Idempotency-Replayed"), "true");
+    EXPECT_EQ(again.content_type, "model/gltf-binary");
+    EXPECT_EQ(again.body == first.body, true);
+    EXPECT_EQ(life().view("a")["version"], 2);
+}
+
 TEST_F(StoredSessions, LeaveMemoryForOthersAndComeBack) {
     life().make("probe");
     life().cut("probe", 3);
