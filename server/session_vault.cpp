@@ -46,6 +46,9 @@ RequestKey key_of(std::string_view stored, std::string print) {
             std::string(stored.substr(0, end))};
 }
 
+/// Bytes of whole answers that go with one snapshot; of more, what is told of the changes.
+constexpr std::size_t kAnswersOfASnapshot = std::size_t{16} << 20;
+
 /// Takes no changes.
 class ReadOnlyLog : public ChangeLog {
   public:
@@ -122,7 +125,10 @@ class SessionVault::Log : public ChangeLog {
         return tail;
     }
     /// It came to nothing.
-    void give_back(const Tail& tail) {
+    void give_back(const Tail& tail, std::vector<KeyedChange> keyed) {
+        const std::lock_guard lock(mutex_);
+        keyed_.insert(keyed_.begin(), std::make_move_iterator(keyed.begin()),
+                      std::make_move_iterator(keyed.end()));
         entries_ += tail.entries;
         bytes_ += tail.bytes;
         seconds_ = seconds_ + tail.seconds;
@@ -244,23 +250,27 @@ void SessionVault::remove(const std::string& birth) {
     if (committed && committed->kind != JournalFault::Kind::Gone) throw_fault(*committed);
 }
 
-/// The entries that a snapshot makes superfluous tell of the keys of their changes: where no answer
-/// was stored, as of one too large or not made yet, nothing else does. What is kept here is durable
-/// with the snapshot at the latest. Where that fails, they are kept for nothing.
-void SessionVault::keep_keys(const Session& session, const std::vector<KeyedChange>& changes) {
-    if (!answer_of) return;
+/// What tells of the keys of changes once a snapshot has taken the place of their entries.
+std::vector<KeptAnswerRow> SessionVault::answers_to(const Session& session,
+                                                    std::span<const KeyedChange> changes) const {
+    std::vector<KeptAnswerRow> answers;
+    if (!answer_of) return answers;
+    std::size_t left = kAnswersOfASnapshot;
     for (const KeyedChange& change : changes) {
-        if (auto answer = answer_of(session, change)) {
-            journal_->keep_answer({session.facts().birth, change.key, change.print, unix_seconds(),
-                                   std::move(*answer)});
-        }
+        auto answer = answer_of(session, change, left);
+        if (!answer) continue;
+        left -= std::min(left, answer->size());
+        answers.push_back(
+            {session.facts().birth, change.key, change.print, unix_seconds(), std::move(*answer)});
     }
+    return answers;
 }
 
 void SessionVault::snapshot(const Session& session) {
     const auto log = std::dynamic_pointer_cast<Log>(session.log());
     if (!log || !log->has_tail()) return;
     const Log::Tail tail = log->begin_snapshot();
+    std::vector<KeyedChange> keyed;
     try {
         std::string bytes;
         SnapshotHead head;
@@ -269,10 +279,11 @@ void SessionVault::snapshot(const Session& session) {
             head = head_of(image, session.counts());
             bytes = pack(image);
         }
-        keep_keys(session, log->take_keyed(head.version));
-        require(journal_->write_snapshot(session.facts().birth, head, bytes));
+        keyed = log->take_keyed(head.version);
+        require(journal_->write_snapshot(session.facts().birth, head, bytes,
+                                         answers_to(session, keyed)));
     } catch (...) {
-        log->give_back(tail);
+        log->give_back(tail, std::move(keyed));
         throw;
     }
 }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <variant>
@@ -89,9 +90,11 @@ class SessionVault {
     std::function<void(const std::string& id)> when_due;
 
     /// The answer that is stored for the key of a change, before a snapshot takes the place of the
-    /// entry that has that key; nothing: the key is forgotten with the process. Set before the
-    /// first session.
-    std::function<std::optional<std::string>(const Session& session, const KeyedChange& change)>
+    /// entry that has that key: the first answer where it has `most` bytes at most, else what is
+    /// told of the change. Nothing: the key is forgotten with the process. Set before the first
+    /// session.
+    std::function<std::optional<std::string>(const Session& session, const KeyedChange& change,
+                                             std::size_t most)>
         answer_of;
 
     Journal& journal() { return *journal_; }
@@ -101,7 +104,8 @@ class SessionVault {
     class Log;
     SessionVault(std::unique_ptr<Journal> journal, HistoryLimits history, TailBounds tail);
     std::shared_ptr<Log> log_of(const SessionFacts& facts);
-    void keep_keys(const Session& session, const std::vector<KeyedChange>& changes);
+    std::vector<KeptAnswerRow> answers_to(const Session& session,
+                                          std::span<const KeyedChange> changes) const;
 
     std::unique_ptr<Journal> journal_;
     const HistoryLimits history_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/routes/restored_answers.hpp"
 
+#include <map>
 #include <utility>
 
 #include "server/archive/packing.hpp"
@@ -44,11 +45,10 @@ void store_answers(Services& services) {
         if (is_stored(answer))
             journal.keep_answer({name.first, name.second, print, unix_seconds(), packed(answer)});
     };
-    services.vault->answer_of = [&services](
-                                    const Session& session,
-                                    const KeyedChange& keyed) -> std::optional<std::string> {
+    services.vault->answer_of = [&services](const Session& session, const KeyedChange& keyed,
+                                            std::size_t most) -> std::optional<std::string> {
         const auto first = services.answers.find({session.facts().birth, keyed.key});
-        if (first && is_stored(*first)) return packed(*first);
+        if (first && is_stored(*first) && first->body.size() <= most) return packed(*first);
         const auto copy = session.change_at(keyed.version);
         const auto* change = std::get_if<ChangeCopy>(&copy);
         if (change == nullptr) return std::nullopt;
@@ -72,7 +72,13 @@ void restore_answers(Services& services) {
     journal.forget_answers(now - age);
     auto stored = journal.answers(now - age);
     if (const auto* fault = std::get_if<JournalFault>(&stored)) throw StorageFault(fault->text);
-    for (const KeptAnswerRow& row : std::get<0>(stored)) {
+    const auto& rows = std::get<0>(stored);
+    std::map<KeptAnswers::Name, std::size_t> last;  // of one name it counts
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        last[{rows[i].scope, rows[i].key}] = i;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const KeptAnswerRow& row = rows[i];
+        if (last[{row.scope, row.key}] != i) continue;
         Response answer;
         Unpacker unpack(row.bytes);
         unpack(answer);

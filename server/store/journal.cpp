@@ -93,7 +93,7 @@ class Journal::Implementation {
     Committed append(JournalEntry entry);
     Committed create(const StoredFacts& session, const SnapshotHead& head, std::string_view bytes);
     Committed write_snapshot(const std::string& birth, const SnapshotHead& head,
-                             std::string_view bytes);
+                             std::string_view bytes, std::vector<KeptAnswerRow> answers);
     Committed remove(const std::string& birth);
     std::variant<std::vector<SessionRow>, JournalFault> sessions() const;
     std::variant<StoredSession, JournalFault> read(const std::string& birth) const;
@@ -151,12 +151,13 @@ Committed Journal::Implementation::create(const StoredFacts& session, const Snap
 }
 
 Committed Journal::Implementation::write_snapshot(const std::string& birth,
-                                                  const SnapshotHead& head,
-                                                  std::string_view bytes) {
+                                                  const SnapshotHead& head, std::string_view bytes,
+                                                  std::vector<KeptAnswerRow> answers) {
     if (auto refused = too_large(head.view.size() + head.digest.size(), birth)) return refused;
     if (!catalog_.find(birth)) return store::gone(birth);
     store::Publish publish;
     publish.snapshot.head = head;
+    publish.answers = std::move(answers);
     return write_parts(birth, std::move(publish), bytes);
 }
 
@@ -306,8 +307,8 @@ Committed Journal::create(const StoredFacts& session, const SnapshotHead& head,
 }
 
 Committed Journal::write_snapshot(const std::string& birth, const SnapshotHead& head,
-                                  std::string_view bytes) {
-    return implementation_->write_snapshot(birth, head, bytes);
+                                  std::string_view bytes, std::vector<KeptAnswerRow> answers) {
+    return implementation_->write_snapshot(birth, head, bytes, std::move(answers));
 }
 
 Committed Journal::remove(const std::string& birth) {

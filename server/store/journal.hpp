@@ -101,9 +101,10 @@ class Journal {
 
     /// From then on `read` starts here; entries up to that version count no more. Requires: a
     /// version from that of the last snapshot to the newest. Commits of others go between its
-    /// parts. One at a time for a session.
+    /// parts. One at a time for a session. `answers` are stored with it, or it is not: the entries
+    /// that count no more may be the only ones that tell of their keys.
     Committed write_snapshot(const std::string& birth, const SnapshotHead& head,
-                             std::string_view bytes);
+                             std::string_view bytes, std::vector<KeptAnswerRow> answers = {});
 
     Committed remove(const std::string& birth);
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "server/store/layout.hpp"
 #include "server/store/rows.hpp"
@@ -32,6 +33,7 @@ struct Publish {
     std::int64_t number = 0;          ///< of that one
     SnapshotRow snapshot;
     AddPart last_part;
+    std::vector<KeptAnswerRow> answers;  ///< stored with it, or it is not
 };
 
 struct Remove {};

@@ -34,6 +34,7 @@ Writer::Writer(const JournalOptions& options, Database database, Inventory inven
         idle_.push_back({Idle::What::Entries, keys, 0});
     for (const Keys& keys : inventory.idle_parts)
         idle_.push_back({Idle::What::Parts, keys, 0});
+    sweep_answers();
     thread_ = std::thread([this] { run(); });
 }
 
@@ -171,28 +172,23 @@ void Writer::do_turn(std::unique_lock<std::mutex>& lock) {
     std::vector<TaskPtr> group = take_group();
     SideWork side_work;
     const bool is_due = side_work_due_ && (closing || Clock::now() >= *side_work_due_);
+    if (!group.empty() || (is_due && !pulse_.is_failing())) {
+        side_work = std::exchange(side_work_, {});
+        side_work_due_.reset();
+    }
     TaskPtr large;
     if (!large_.empty()) {
         large = std::move(large_.front());
         large_.pop_front();
-    }
-    if (!group.empty() || large || (is_due && !pulse_.is_failing())) {
-        side_work = std::exchange(side_work_, {});
-        side_work_due_.reset();
     }
     const bool has_idle = !idle_.empty();
     lock.unlock();
     room_.notify_all();
 
     const bool has_waiting = !group.empty() || large;
-    bool is_aside_done = true;
-    if (!group.empty() || !side_work.empty())
-        is_aside_done = commit_group(std::move(group), std::move(side_work));
+    if (!group.empty() || !side_work.empty()) commit_group(std::move(group), std::move(side_work));
     checkpoint();
-    // What a snapshot makes superfluous has its keys among the answers: they come first.
-    if (large && !is_aside_done) {
-        large->done.set_value(JournalFault{JournalFault::Kind::Io, pulse_.health().why});
-    } else if (large) {
+    if (large) {
         commit_large(std::move(large));
         checkpoint();
     }

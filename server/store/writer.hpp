@@ -83,7 +83,7 @@ class Writer {
     void set_side_work_due();
     void add_idle(Idle idle);
 
-    bool commit_group(std::vector<TaskPtr> group, SideWork side_work);
+    void commit_group(std::vector<TaskPtr> group, SideWork side_work);
     void commit_apart(std::vector<TaskPtr>& group);
     bool move_session(const std::string& birth);
     void commit_large(TaskPtr task);
@@ -109,7 +109,9 @@ class Writer {
     RowWriter::Result do_publish(Task& task, const Publish& publish);
     RowWriter::Result do_remove(Task& task);
     RowWriter::Result do_side_work(const SideWork& side_work);
-    void count_answers(const SideWork& side_work);
+    Result add_answers(std::span<const KeptAnswerRow> answers);
+    void count_answers(std::span<const KeptAnswerRow> answers);
+    void sweep_answers();
     void enter_into_catalog(const Task& task);
     bool open_anew();
     JournalFault told(const DatabaseFault& fault) const;
@@ -136,6 +138,7 @@ class Writer {
     std::set<std::string> unmarked_;  ///< births that have versions which `used` does not know of
     std::int64_t next_answer_;
     std::uint64_t answer_bytes_;
+    bool is_sweeping_answers_ = false;
     Clock::time_point next_probe_;
     std::uint64_t turns_ = 0;
 

@@ -87,8 +87,7 @@ Result Writer::transact(std::size_t entries, std::size_t bytes,
     return fault;
 }
 
-/// Whether the side work needs no further care.
-bool Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
+void Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
     Result fault = commit_tasks(group, &side_work);
     if (fault && fault->is_of_rows()) {
         commit_apart(group);
@@ -107,11 +106,10 @@ bool Writer::commit_group(std::vector<TaskPtr> group, SideWork side_work) {
     }
     for (const TaskPtr& task : group)
         task->done.set_value(std::move(task->refusal));
-    if (!fault || side_work.empty()) return true;
+    if (!fault || side_work.empty()) return;
     const std::lock_guard lock(mutex_);
     side_work_.put_back(std::move(side_work));
     set_side_work_due();
-    return false;
 }
 
 /// The tasks of one session in a transaction, those of the next one in another: so that the session
@@ -203,7 +201,7 @@ Result Writer::commit_tasks(std::span<const TaskPtr> tasks, SideWork* side_work)
     for (const TaskPtr& task : tasks) {
         if (!task->refusal) enter_into_catalog(*task);
     }
-    if (side_work != nullptr) count_answers(*side_work);
+    if (side_work != nullptr) count_answers(side_work->answers);
     return std::nullopt;
 }
 
@@ -266,7 +264,18 @@ Result Writer::do_publish(Task& task, const Publish& publish) {
         if (auto fault = rows_->set_used(publish.number, used)) return fault;
     }
     const std::int64_t number = publish.made ? publish.number : known->number;
-    return rows_->set_snapshot(number, task.birth, publish.snapshot);
+    if (auto fault = rows_->set_snapshot(number, task.birth, publish.snapshot)) return fault;
+    return add_answers(publish.answers);
+}
+
+/// Requires: a transaction with no other answers.
+Result Writer::add_answers(std::span<const KeptAnswerRow> answers) {
+    std::int64_t key = next_answer_;
+    for (const KeptAnswerRow& answer : answers) {
+        wrote_ = true;
+        if (auto fault = rows_->add_answer(key++, answer)) return fault;
+    }
+    return std::nullopt;
 }
 
 Result Writer::do_remove(Task& task) {
@@ -286,22 +295,22 @@ Result Writer::do_side_work(const SideWork& side_work) {
         wrote_ = true;
         if (auto fault = rows_->set_used(known->number, {time, known->newest})) return fault;
     }
-    std::int64_t key = next_answer_;
-    for (const KeptAnswerRow& answer : side_work.answers) {
-        wrote_ = true;
-        if (auto fault = rows_->add_answer(key++, answer)) return fault;
-    }
-    return std::nullopt;
+    return add_answers(side_work.answers);
 }
 
 /// Those that are stored now.
-void Writer::count_answers(const SideWork& side_work) {
-    next_answer_ += static_cast<std::int64_t>(side_work.answers.size());
-    const std::uint64_t before = answer_bytes_;
-    for (const KeptAnswerRow& answer : side_work.answers)
+void Writer::count_answers(std::span<const KeptAnswerRow> answers) {
+    next_answer_ += static_cast<std::int64_t>(answers.size());
+    for (const KeptAnswerRow& answer : answers)
         answer_bytes_ += answer.bytes.size();
-    const std::size_t bound = options_.stored_answer_bytes;
-    if (before <= bound && answer_bytes_ > bound) add_idle({Idle::What::SurplusAnswers, {}, 0});
+    sweep_answers();
+}
+
+/// Has those beyond the bound dropped, the oldest first, unless that is on its way.
+void Writer::sweep_answers() {
+    if (answer_bytes_ <= options_.stored_answer_bytes || is_sweeping_answers_) return;
+    is_sweeping_answers_ = true;
+    add_idle({Idle::What::SurplusAnswers, {}, 0});
 }
 
 /// What was committed, and what counts no more since.
@@ -315,6 +324,7 @@ void Writer::enter_into_catalog(const Task& task) {
     if (const auto* publish = std::get_if<Publish>(&task.what)) {
         const SnapshotRow& snapshot = publish->snapshot;
         const std::uint64_t version = snapshot.head.version;
+        count_answers(publish->answers);
         if (publish->made) {
             catalog_.add(*publish->made, {publish->number, publish->made->id, version, version,
                                           snapshot.number, std::string()});

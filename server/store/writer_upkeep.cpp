@@ -39,6 +39,7 @@ void Writer::drop_a_piece() {
         answer_bytes_ -= std::min(answer_bytes_, static_cast<std::uint64_t>(dropped.answer_bytes));
         if (dropped.more) return;
     }
+    if (idle.what == Idle::What::SurplusAnswers) is_sweeping_answers_ = false;
     const std::lock_guard lock(mutex_);
     idle_.pop_front();
 }
@@ -86,6 +87,7 @@ void Writer::grow_log() {
 
 /// A small durable write: the disk takes commits again, or it does not.
 void Writer::probe() {
+    next_probe_ = Clock::now() + options_.probe_every;
     transact(0, 0, [this]() -> Result {
         wrote_ = true;
         return rows_->probe(unix_seconds());
