@@ -157,7 +157,8 @@ Committed Journal::Implementation::write_snapshot(const std::string& birth,
     if (!catalog_.find(birth)) return store::gone(birth);
     store::Publish publish;
     publish.snapshot.head = head;
-    publish.answers = std::move(answers);
+    publish.answers.assign(std::make_move_iterator(answers.begin()),
+                           std::make_move_iterator(answers.end()));
     return write_parts(birth, std::move(publish), bytes);
 }
 

@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <future>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "server/store/layout.hpp"
 #include "server/store/rows.hpp"
@@ -33,7 +33,7 @@ struct Publish {
     std::int64_t number = 0;          ///< of that one
     SnapshotRow snapshot;
     AddPart last_part;
-    std::vector<KeptAnswerRow> answers;  ///< stored with it, or it is not
+    std::deque<KeptAnswerRow> answers;  ///< stored with it, or it is not
 };
 
 struct Remove {};

@@ -109,8 +109,8 @@ class Writer {
     RowWriter::Result do_publish(Task& task, const Publish& publish);
     RowWriter::Result do_remove(Task& task);
     RowWriter::Result do_side_work(const SideWork& side_work);
-    Result add_answers(std::span<const KeptAnswerRow> answers);
-    void count_answers(std::span<const KeptAnswerRow> answers);
+    RowWriter::Result add_answers(const std::deque<KeptAnswerRow>& answers);
+    void count_answers(const std::deque<KeptAnswerRow>& answers);
     void sweep_answers();
     void enter_into_catalog(const Task& task);
     bool open_anew();

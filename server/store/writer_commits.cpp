@@ -269,7 +269,7 @@ Result Writer::do_publish(Task& task, const Publish& publish) {
 }
 
 /// Requires: a transaction with no other answers.
-Result Writer::add_answers(std::span<const KeptAnswerRow> answers) {
+Result Writer::add_answers(const std::deque<KeptAnswerRow>& answers) {
     std::int64_t key = next_answer_;
     for (const KeptAnswerRow& answer : answers) {
         wrote_ = true;
@@ -299,7 +299,7 @@ Result Writer::do_side_work(const SideWork& side_work) {
 }
 
 /// Those that are stored now.
-void Writer::count_answers(std::span<const KeptAnswerRow> answers) {
+void Writer::count_answers(const std::deque<KeptAnswerRow>& answers) {
     next_answer_ += static_cast<std::int64_t>(answers.size());
     for (const KeptAnswerRow& answer : answers)
         answer_bytes_ += answer.bytes.size();
