@@ -31,7 +31,8 @@ class SessionIsDamaged : public std::runtime_error {
 struct VaultEntry {
     SessionFacts facts;
     SessionCounts counts;
-    std::int64_t used = 0;  ///< Unix seconds
+    std::int64_t used = 0;   ///< Unix seconds
+    std::uint64_t tail = 0;  ///< changes since the snapshot
     RequestKey made_by;     ///< of the request that made it
     std::string damage;     ///< not empty: out of service, and why; then the rest may be too
 };
@@ -74,11 +75,14 @@ class SessionVault {
 
     /// Stores a new session and has it log its changes here from then on, with the key of the
     /// request that this thread works on. Requires: nobody else has the session yet. Throws
-    /// StorageFault.
+    /// StorageFault. Memory: as much as the session has.
     void create(Session& session);
     /// Throws SessionIsDamaged, SessionIsGone, StorageFault. Cost: the snapshot, and what its
     /// changes since took.
     LoadedSession load(const std::string& birth);
+    /// Calls `when_due` where a session that was loaded came with so long a tail. Requires: it can
+    /// be found by its id.
+    void tell_if_due(const Session& session);
     /// Throws StorageFault.
     void remove(const std::string& birth);
     /// Stores the session as it is, so that loading it repeats nothing. Nothing to do where no
