@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <new>
 
+#include "core/mesh/large_pages.hpp"
+
 #if __has_include(<sys/mman.h>)
 #include <sys/mman.h>
 #endif
@@ -12,11 +14,9 @@ namespace tinsmith::core {
 
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{2} << 20;
-
 std::size_t in_whole_pages(std::size_t bytes) {
     if (bytes > static_cast<std::size_t>(-1) - 2 * kLargePage) throw std::bad_alloc();
-    return (bytes + kLargePage - 1) / kLargePage * kLargePage;
+    return in_large_pages(bytes);
 }
 
 }  // namespace

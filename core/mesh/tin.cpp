@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/mesh/large_pages.hpp"
+
 namespace tinsmith::core {
 
 Tin::Tin(const Tin& other)
@@ -72,8 +74,12 @@ MeshData Tin::to_data() const {
 }
 
 std::size_t Tin::memory_bytes() const {
-    return vertices_.size() * sizeof(Vertex) + triangles_.size() * sizeof(Triangle) +
-           hints_.size() * sizeof(TriangleId) +
+    const auto held = [](const auto& slots) {
+        const std::size_t bytes = slots.size() * sizeof(slots[0]);
+        const bool is_large = slots.capacity() * sizeof(slots[0]) >= kLargeBlock;
+        return is_large ? in_large_pages(bytes) : bytes;
+    };
+    return held(vertices_) + held(triangles_) + hints_.size() * sizeof(TriangleId) +
            constraint_splits_.size() * sizeof(ConstraintSplit) + names_.size() * sizeof(VertexId) +
            gone_ends_.size() * sizeof(GoneEnd) + boundary_.memory_bytes();
 }

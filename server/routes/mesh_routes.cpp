@@ -29,7 +29,6 @@ enum class MeshFormat { Glb, Json, Gltf, Obj, LandXml };
 constexpr std::array<std::string_view, 5> kMeshTypes{kGlb, kJson, kGltf, kObj, kXml};
 constexpr int kDone = 200;
 /// In bytes: what encoding one of these takes is worth giving back.
-constexpr std::size_t kLargeMesh = std::size_t{16} << 20;
 
 /// Meshes with full doubles have few options.
 constexpr std::array<std::string_view, 2> kJsonOptions{"version", "bbox"};

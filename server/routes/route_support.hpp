@@ -129,5 +129,7 @@ std::optional<Response> refusal_of_memory(Services& services, const Request& req
 /// The allocator keeps what large meshes and their copies leave behind, for each thread its own, a
 /// gigabyte easily; it gives that back to the system only when told to.
 void give_back_memory();
+/// For less it does not pay.
+inline constexpr std::size_t kLargeMesh = std::size_t{8} << 20;
 
 }  // namespace tinsmith::server

@@ -64,8 +64,9 @@ Response make_session(Services& services, const Request& request, std::optional<
     if (const auto* why = std::get_if<StoreRefusal>(&added)) {
         return refuse_session(request, services.limits, *why);
     }
-    return tell_created(services.sessions.view(*std::get<0>(added)),
-                        std::get<0>(added)->facts().birth);
+    const Session& session = *std::get<0>(added);
+    if (session.mesh_bytes() >= kLargeMesh) give_back_memory();
+    return tell_created(services.sessions.view(session), session.facts().birth);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST_F(Accounting, OfMeshesIsTrue) {
 
 TEST_F(Accounting, OfHistoriesIsTrue) {
     const double ratio = ratio_over([&] {
-        for (int i = 0; i < 600; ++i)
+        for (int i = 0; i < 900; ++i)
             ASSERT_EQ(cut("first", dice_).status, 200);
     });
     EXPECT_GT(ratio, 0.7);
