@@ -34,7 +34,7 @@ class SmallDisk {
   public:
     explicit SmallDisk(std::string path) : path_(std::move(path)) {
         std::filesystem::create_directory(path_);
-        is_mounted_ = ::mount("tinsmith", path_.c_str(), "tmpfs", 0, "size=16m,mode=0700") == 0;
+        is_mounted_ = ::mount("tinsmith", path_.c_str(), "tmpfs", 0, "size=48m,mode=0700") == 0;
     }
     ~SmallDisk() {
         if (is_mounted_) ::umount2(path_.c_str(), MNT_DETACH);
@@ -97,17 +97,21 @@ class FullDisk : public testing::Test {
 
     std::string mesh() { return client_->ask("GET", kSession + "/mesh.json").body; }
 
-    /// Edits until the disk has no room even for that. The mesh before the first refusal.
+    /// Edits until the disk has no room, first for large ones, then for small ones either. The mesh
+    /// before the last refusal.
     std::string edit_until_refused() {
         std::string before = mesh();
+        std::size_t note = kLongNote;
         for (int i = 0; i < 3000 && server_->program().is_running(); ++i) {
-            const Answer answer = edit(kLongNote);
+            const Answer answer = edit(note);
             if (answer.status == 503) {
                 const json problem = json::parse(answer.body, nullptr, false);
                 EXPECT_NE(problem.value("type", "").find("storage-unavailable"), std::string::npos)
                     << answer.body;
                 EXPECT_FALSE(answer.header("retry-after").empty()) << answer.body;
-                return before;
+                if (note == 0) return before;
+                note = 0;
+                continue;
             }
             EXPECT_EQ(answer.status, 200) << answer.body;
             if (answer.status != 200) break;
