@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A terrain from the reader's disk becomes a session, as a job with progress.
-import {type Call, type Job, json, Problem, send, type Session, upload} from './api';
+import {type Call, type Job, json, Problem, send, type Session, sessionPath, upload} from './api';
 import type {App} from './app';
 
 const TYPES: Record<string, string> = {
@@ -8,6 +8,9 @@ const TYPES: Record<string, string> = {
   xml: 'application/xml', obj: 'model/obj', csv: 'text/csv', xyz: 'text/csv', asc: 'text/plain', txt: 'text/plain',
 };
 export const TERRAIN_ENDINGS = Object.keys(TYPES).map((ending) => `.${ending}`).join(',');
+
+/** So many questions in a row may get lost. */
+const PATIENCE = 10;
 
 export class Upload {
   progress: {text: string; part: number} | null = null;
@@ -54,13 +57,25 @@ export class Upload {
   private async follow(location: string, name: string) {
     this.job = location;
     for (let pause = 60; ; pause = Math.min(pause * 1.5, 500)) {
-      const job = await json<Job>({method: 'GET', path: location});
+      const job = await this.poll(location);
       this.tell(`Building the mesh of ${name}`, 0.5 + job.progress / 2);
       if (job.state === 'done') return;
       if (job.state === 'stopped') throw new Problem(499, '', 'Stopped', `${name} was not loaded.`, [], null);
       // What went wrong is the answer that the request would have had.
       if (job.state === 'failed') { await send({method: 'GET', path: `${location}/result`}); return; }
       await new Promise((resolve) => setTimeout(resolve, pause));
+    }
+  }
+
+  /** The job goes on whether it is asked for or not: a question that gets lost is asked again. */
+  private async poll(location: string): Promise<Job> {
+    for (let left = PATIENCE; ; --left) {
+      try {
+        return await json<Job>({method: 'GET', path: location});
+      } catch (error) {
+        if (!(error instanceof Problem && error.isPassing && left > 0)) throw error;
+        await new Promise((resolve) => setTimeout(resolve, 1000 * (error.retryAfter ?? 1)));
+      }
     }
   }
 
@@ -80,11 +95,13 @@ export class Upload {
     await this.app.open(made.id);
   }
 
-  async remove() {
-    const call: Call = {method: 'DELETE', path: this.app.path()};
-    this.app.note(call);
+  async remove(id: string) {
+    const {app} = this;
+    const call: Call = {method: 'DELETE', path: sessionPath(id)};
+    app.note(call);
     await send(call);
-    await this.app.listSessions();
-    if (this.app.sessions[0]) await this.app.open(this.app.sessions[0].id); else this.app.close();
+    await app.listSessions();
+    if (app.session?.id !== id) return;
+    if (app.sessions[0]) await app.open(app.sessions[0].id); else app.close();
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The main job: a shape, what would come of it, and then its edges in the mesh.
-import type {App} from '../app';
+import {type App, Said} from '../app';
 import type {Draft, Kind} from '../draft';
 import {button, field, h, input, number, select, shortUnit} from '../ui';
 import {buildReport} from './report';
@@ -63,7 +63,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
   const pasted = h('textarea', {rows: 4, 'aria-label': 'GeoJSON text', placeholder: '{"type": "Polygon", "coordinates": …}', spellcheck: 'false'});
   const paste = h('details', {}, h('summary', {}, 'Paste GeoJSON'), pasted, button('Take it', () => {
     void app.attempt(async () => {
-      try { draft.take('', pasted.value); } catch { throw new Error('This is not JSON.'); }
+      try { draft.take('', pasted.value); } catch { throw new Said('This is not JSON.'); }
       await draft.dryRun();
     });
   }, {class: 'small'}));
@@ -88,7 +88,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
     points.hidden = !isOurs || draft.imported !== null;
   });
   // Nothing is done of which there was no report.
-  const lock = () => { go.disabled = dry.disabled || draft.promised === null || draft.stale || draft.drawing; };
+  const lock = () => { go.disabled = dry.disabled || draft.promised === null || draft.stale || draft.drawing || app.editing || app.isReadOnly; };
   app.on(['draft', 'report', 'session', 'mesh', 'progress'], lock);
   app.on(['session'], () => { draft.changed(); });
   return h('div', {}, h('div', {class: 'buttons'}, h('span', {class: 'soft'}, 'Draw'), ...kinds.map(([, element]) => element), h('span', {class: 'soft'}, 'or'), button('GeoJSON…', () => { file.click(); }), file),

@@ -46,7 +46,7 @@ export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElemen
       ['Plan area', areaText(region.plan_area, unit)], ['Surface area', areaText(region.surface_area, unit)],
       ['Triangles', number(region.triangles.length)], ['Within', region.within.join(', ') || 'none']]),
       h('div', {class: 'buttons'}, button('Show', () => { show(app, view, region.triangles); }, {class: 'small'}),
-        button('Take out', () => { void app.attempt(() => edit.takeOut()); }, {class: 'small danger', title: 'As if it had never been there'})));
+        button('Take out', () => { void app.attempt(() => edit.takeOut()); }, {class: 'small danger', title: 'As if it had never been there', disabled: app.isReadOnly})));
   });
   return h('div', {}, empty, list, chosen);
 }
@@ -67,7 +67,7 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
   const {wish} = edit;
   const rows: [HTMLElement, () => boolean][] = [];
   const row = (element: HTMLElement, when: () => boolean) => { rows.push([element, when]); return element; };
-  const text = (name: keyof Wish, attributes = {}) => input(wish[name], (value) => { (wish as any)[name] = value; }, attributes);
+  const text = (name: keyof Wish, attributes = {}) => input(wish[name], (value) => { (wish as any)[name] = value; edit.change(); }, attributes);
   const lifts = () => wish.operation === 'set' || wish.operation === 'offset';
   const level = text('elevation', {id: 'level'});
   const width = field('Width', text('width'));
@@ -77,7 +77,7 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     row(field('To', select([['elevation', 'a level'], ['plane', 'a plane of three points'], ['slope', 'a slope']], wish.shape,
       (value) => { wish.shape = value as Wish['shape']; update(); })), () => wish.operation === 'set'),
     row(field('Level', level, 'elevation'), () => wish.operation === 'set' && wish.shape === 'elevation'),
-    row(field('Points', h('textarea', {rows: 3, placeholder: 'x, y, z\nx, y, z\nx, y, z', oninput: (event: Event) => { wish.plane = (event.target as HTMLTextAreaElement).value; }})),
+    row(field('Points', h('textarea', {rows: 3, placeholder: 'x, y, z\nx, y, z\nx, y, z', oninput: (event: Event) => { wish.plane = (event.target as HTMLTextAreaElement).value; edit.change(); }})),
       () => wish.operation === 'set' && wish.shape === 'plane'),
     row(field('Slope', text('slope'), 'rise over run'), () => wish.operation === 'set' && wish.shape === 'slope'),
     row(field('Azimuth', text('azimuth'), 'the way up, ° from north'), () => wish.operation === 'set' && wish.shape === 'slope'),
@@ -86,10 +86,12 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     row(field('Passes', text('passes')), () => wish.operation === 'smooth'),
     row(field('Border', select([['old', 'stays; a rim inside climbs'], ['new', 'moves too'], ['taper', 'tapers outside']], wish.border,
       (value) => { wish.border = value as Wish['border']; update(); })), lifts),
+    row(field('Border', select([['old', 'stays'], ['new', 'is smoothed too']], wish.edge, (value) => { wish.edge = value as Wish['edge']; edit.change(); })),
+      () => wish.operation === 'smooth'),
     row(width, () => lifts() && wish.border !== 'new'));
   const update = () => {
     for (const [element, when] of rows) element.hidden = !when();
-    edit.forget();
+    edit.change();
   };
   const box = h('div');
   let shown = '';
@@ -105,10 +107,12 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     wish.elevation = level.value = (sum / Math.max(1, 3 * region.triangles.length)).toFixed(1);
   });
   const apply = () => { void app.attempt(() => edit.apply(), apply); };
+  const doIt = button('Apply', apply, {class: 'main', id: 'edit-apply'});
+  app.on(['progress', 'session'], () => { doIt.disabled = app.editing || app.isReadOnly; });
   app.on(['edit'], () => { box.replaceChildren(...buildEditReport(app, edit)); });
   update();
   return h('div', {}, h('h2', {}, 'Edit the ground inside'), form, h('div', {class: 'buttons go'},
-    button('Dry run', () => { void app.attempt(() => edit.dryRun()); }, {id: 'edit-dry'}), button('Apply', apply, {class: 'main', id: 'edit-apply'})), box);
+    button('Dry run', () => { void app.attempt(() => edit.dryRun()); }, {id: 'edit-dry'}), doIt), box);
 }
 
 function buildEditReport(app: App, edit: RegionEdit): HTMLElement[] {
@@ -142,7 +146,8 @@ function buildVolume(app: App, edit: RegionEdit): HTMLElement {
   });
   return h('details', {}, h('summary', {}, 'Measure cut and fill'),
     h('div', {class: 'inline'}, level, button('Against the level', () => {
-      void app.attempt(() => edit.askVolume({elevation: Number(level.value)}, `against ${level.value}`));
+      // Of an empty field there is no number: the server says so.
+      void app.attempt(() => edit.askVolume({elevation: level.value.trim() === '' ? null : Number(level.value)}, `against ${level.value}`));
     }, {class: 'small'})),
     h('div', {class: 'inline'}, version, button('Against the version', () => {
       void app.attempt(() => edit.askVolume({version: Number(version.value)}, `against version ${version.value}`));
