@@ -236,3 +236,30 @@ viewTest('promises the angles that then come', async (view, id) => {
   assert.equal((await view.page.locator('#report .angles').textContent()).replace('after:', 'would be:'), text);
   assert.equal((await stand.client.session(id)).version, 2);
 });
+
+viewTest('draws again when the graphics come back', {polygon: SQUARE, expected: [/Context (Lost|Restored)/, /CONTEXT_LOST_WEBGL/]}, async (view) => {
+  await view.page.waitForFunction(() => !window.tinsmith.view.regions.isGlowing);
+  const before = await view.pixels();
+  await view.state(async () => {
+    const {stage} = window.tinsmith;
+    const lose = stage.renderer.getContext().getExtension('WEBGL_lose_context');
+    const restored = new Promise((resolve) => { stage.canvas.addEventListener('webglcontextrestored', () => setTimeout(resolve, 200)); });
+    lose.loseContext();
+    await new Promise((resolve) => setTimeout(resolve, 200));
+    lose.restoreContext();
+    await restored;
+    await stage.drawn();
+  });
+  assert.equal(await view.pixels(), before);
+});
+
+test('says where nothing can be drawn', async () => {
+  const view = await openPage(stand.browser, stand.server.origin, '', {expected: [/WebGL/],
+    prepare: (page) => page.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; }),
+    meet: async (page) => {
+      await page.getByText('This browser draws no terrain').waitFor();
+      assert.equal(await page.locator('#welcome a').getAttribute('href'), 'docs');
+      await page.evaluate(() => { window.tinsmith = {app: {busy: 0}, stage: {isEconomical: false}}; });
+    }, empty: true});
+  await view.end();
+});

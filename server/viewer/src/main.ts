@@ -18,16 +18,29 @@ import {Pointer} from './pointer';
 import {Profile} from './profile';
 import {RegionEdit} from './region_edit';
 import {Stage} from './stage';
-import {byId} from './ui';
+import {byId, h} from './ui';
 import {Upload} from './upload';
 import {View} from './view';
 
 const GEOJSON_TYPE = /"type"\s*:\s*"(Feature|FeatureCollection|GeometryCollection|(Multi)?(Point|LineString|Polygon))"/;
 const HEAD_BYTES = 65536;
 
+/** A browser that cannot draw says so where the terrain would be. */
+function makeStage(canvas: HTMLCanvasElement): Stage {
+  try {
+    return new Stage(canvas);
+  } catch (error) {
+    const welcome = byId('welcome');
+    welcome.hidden = false;
+    welcome.replaceChildren(h('h2', {}, 'This browser draws no terrain'),
+      h('p', {}, 'WebGL 2 is missing or switched off. Everything can be done without this page, too: see the ', h('a', {href: 'docs'}, 'API'), '.'));
+    throw error;
+  }
+}
+
 const app = new App();
 const draft = new Draft(app);
-const stage = new Stage(byId<HTMLCanvasElement>('view'));
+const stage = makeStage(byId<HTMLCanvasElement>('view'));
 const view = new View(app, draft, stage);
 const compare = new Compare(app, view.ramp);
 view.compare = compare;

@@ -77,7 +77,8 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
   draft.onChange(() => {
     for (const [kind, element] of kinds) element.setAttribute('aria-pressed', String(draft.kind === kind && draft.drawing));
     const n = draft.points.length;
-    state.textContent = draft.imported ? `${draft.imported.name || 'What was pasted'}, as it is.`
+    state.textContent = app.isReadOnly ? 'This terrain takes no changes; what would come of a shape can be asked.'
+      : draft.imported ? `${draft.imported.name || 'What was pasted'}, as it is.`
       : draft.kind === 'Profile' ? 'Draw a shape, or drop a GeoJSON file on the map.'
       : draft.drawing ? `${number(n)} ${n === 1 ? 'corner' : 'corners'}. Click to add; double-click or Enter finishes, Backspace takes back, Escape cancels.`
       : n > 0 ? `${draft.kind === 'Polygon' ? 'Polygon' : 'Line'} of ${number(n)} corners.` : 'Draw a shape, or drop a GeoJSON file on the map.';

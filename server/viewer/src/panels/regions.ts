@@ -18,13 +18,14 @@ export function swatch(id: string, isRegion: boolean) {
 
 export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElement {
   const list = h('ul', {class: 'regions', 'aria-label': 'Regions'});
-  const empty = h('p', {class: 'soft'}, 'No polygon is in this mesh yet: draw one, or take a GeoJSON file.');
+  const empty = h('p', {class: 'soft'});
   const chosen = h('div', {hidden: true});
   const facts = h('div');
   chosen.append(facts, buildForm(app, edit), buildVolume(app, edit));
   app.on(['regions', 'selection'], () => {
     const areas = new Map(app.regions.map((region) => [region.polygon, region]));
     empty.hidden = app.features.length > 0;
+    empty.textContent = app.session ? 'No polygon is in this mesh yet: draw one, or take a GeoJSON file.' : 'No terrain is shown.';
     list.replaceChildren(...app.features.map((feature) => {
       const {id} = feature.tinsmith;
       const region = areas.get(id);
@@ -70,6 +71,7 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
   const text = (name: keyof Wish, attributes = {}) => input(wish[name], (value) => { (wish as any)[name] = value; edit.change(); }, attributes);
   const lifts = () => wish.operation === 'set' || wish.operation === 'offset';
   const level = text('elevation', {id: 'level'});
+  const through = text('point', {placeholder: 'x, y, z', inputmode: 'text'});
   const width = field('Width', text('width'));
   const form = h('div', {class: 'fields'},
     field('Do', select([['set', 'set the ground'], ['offset', 'raise or lower'], ['smooth', 'smooth'], ['remove', 'cut a hole'], ['keep', 'keep only the inside']],
@@ -81,7 +83,7 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
       () => wish.operation === 'set' && wish.shape === 'plane'),
     row(field('Slope', text('slope'), 'rise over run'), () => wish.operation === 'set' && wish.shape === 'slope'),
     row(field('Azimuth', text('azimuth'), 'the way up, ° from north'), () => wish.operation === 'set' && wish.shape === 'slope'),
-    row(field('Through', text('point', {placeholder: 'x, y, z', inputmode: 'text'})), () => wish.operation === 'set' && wish.shape === 'slope'),
+    row(field('Through', through), () => wish.operation === 'set' && wish.shape === 'slope'),
     row(field('By', text('by'), 'below 0 lowers'), () => wish.operation === 'offset'),
     row(field('Passes', text('passes')), () => wish.operation === 'smooth'),
     row(field('Border', select([['old', 'stays; a rim inside climbs'], ['new', 'moves too'], ['taper', 'tapers outside']], wish.border,
@@ -102,9 +104,11 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     if (!region || name === shown) { shown = name; return; }
     shown = name;
     // The mean of the corners is where the ground is; a level near it is what people try first.
-    let sum = 0;
-    for (const t of region.triangles) for (let k = 0; k < 3; ++k) sum += app.mesh.positions[3 * app.mesh.corners[3 * t + k] + 2];
-    wish.elevation = level.value = (sum / Math.max(1, 3 * region.triangles.length)).toFixed(1);
+    const sum = [0, 0, 0];
+    for (const t of region.triangles) for (let k = 0; k < 9; ++k) sum[k % 3] += app.mesh.positions[3 * app.mesh.corners[3 * t + Math.floor(k / 3)] + (k % 3)];
+    const mean = sum.map((all) => (all / Math.max(1, 3 * region.triangles.length)).toFixed(1));
+    wish.elevation = level.value = mean[2];
+    wish.point = through.value = mean.join(', ');
   });
   const apply = () => { void app.attempt(() => edit.apply(), apply); };
   const doIt = button('Apply', apply, {class: 'main', id: 'edit-apply'});
