@@ -2,13 +2,13 @@
 // What goes wrong around the page: the connection, the disk, other people, time that runs out.
 
 import assert from 'node:assert/strict';
-import {mkdtempSync, rmSync} from 'node:fs';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {test} from 'node:test';
-import {ask, startServer} from '../support/program.mjs';
+import {ask, project, startServer} from '../support/program.mjs';
 import {Client, hills, openPage} from './browser.mjs';
-import {assertSameMesh, button, drawSquare, integrate, REFUSED, SQUARE, stand, viewTest} from './stand.mjs';
+import {assertSameMesh, button, drawSquare, give, integrate, REFUSED, SQUARE, stand, viewTest} from './stand.mjs';
 
 const UNREACHED = [/Failed to load resource: net::ERR_(INTERNET_DISCONNECTED|FAILED)/];
 const REFUSED_FOR_NOW = [/Failed to load resource: the server responded with a status of (503|429)/];
@@ -235,6 +235,30 @@ viewTest('promises the angles that then come', async (view, id) => {
   assert.deepEqual([measured.before.bars, measured.after.bars], [promised.before, promised.after]);
   assert.equal((await view.page.locator('#report .angles').textContent()).replace('after:', 'would be:'), text);
   assert.equal((await stand.client.session(id)).version, 2);
+});
+
+viewTest('finds another name where one is taken by somebody unseen', {expected: REFUSED}, async (view) => {
+  await stand.client.make('spots', hills(11));
+  // Made since this page read its list.
+  await view.state(() => { window.tinsmith.app.sessions = window.tinsmith.app.sessions.filter(({id}) => id !== 'spots'); });
+  const files = [{name: 'spots.csv', content: readFileSync(join(project, 'tests/data/spot_heights.csv'))}];
+  await give(view, '#view', 'drop', {files});
+  await view.page.waitForFunction(() => window.tinsmith.app.session.id === 'spots-2');
+  await view.rest();
+  assert.equal((await stand.client.session('spots')).triangles, 200, 'the other is as it was');
+  await give(view, '#view', 'drop', {files: [...files, ...files]});
+  await told(view).getByText('drop one at a time').waitFor();
+  for (const id of ['spots', 'spots-2']) await ask(`${stand.server.origin}/v1/sessions/${id}`, {method: 'DELETE'});
+});
+
+let starting = 2;
+viewTest('waits for a server that is starting', {expected: REFUSED_FOR_NOW, prepare: (page) => page.route(/\/v1\/sessions$/, (route) => (starting-- > 0
+  ? route.fulfill({status: 503, headers: {'Retry-After': '1'}, contentType: 'application/problem+json',
+    body: JSON.stringify({type: 'urn:tinsmith:problem:not-ready', title: 'Not ready', status: 503, detail: 'It reads its sessions.'})}) : route.continue())),
+meet: async (page) => { await page.locator('#hint').getByText('The server is starting').waitFor(); }}, async (view, id) => {
+  assert.ok(starting < 0);
+  assert.deepEqual([await view.page.locator('#hint').textContent(), await told(view).textContent()], ['', '']);
+  await assertSameMesh(view, id);
 });
 
 viewTest('draws again when the graphics come back', {polygon: SQUARE, expected: [/Context (Lost|Restored)/, /CONTEXT_LOST_WEBGL/]}, async (view) => {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {Problem} from './api';
 import {App, Said} from './app';
 import {Compare} from './compare';
 import {CursorView} from './cursor_view';
@@ -110,7 +111,8 @@ pointer.onFinish = () => {
 /** What is dropped or pasted: a file, or text that is GeoJSON. */
 function takeFrom(data: DataTransfer | null): boolean {
   const file = data?.files[0], text = data?.getData('text/plain') ?? '';
-  if (file) void take(file);
+  if (data && data.files.length > 1) void app.attempt(() => Promise.reject(new Said('These are several files: drop one at a time.')));
+  else if (file) void take(file);
   else if (isGeoJson(text.slice(0, HEAD_BYTES))) takeShape('', text);
   else return false;
   return true;
@@ -149,8 +151,23 @@ addEventListener('hashchange', () => {
   if (id && id !== app.session?.id) void app.attempt(() => app.open(id));
 });
 
+/** A server that has just been started reads its sessions first, and says so. */
+async function listWhenReady() {
+  for (let left = 120; ; --left) {
+    try {
+      await app.listSessions();
+      break;
+    } catch (error) {
+      if (!(error instanceof Problem && error.word === 'not-ready' && left > 0)) throw error;
+      view.hint('The server is starting …');
+      await new Promise((resolve) => setTimeout(resolve, 1000 * (error.retryAfter ?? 1)));
+    }
+  }
+  view.hint('');
+}
+
 void app.attempt(async () => {
-  await app.listSessions();
+  await listWhenReady();
   const there = app.sessions.filter((session) => !isOutOfService(session)).map(({id}) => id);
   const id = wanted();
   const first = [id, 'demo', there[0]].find((one) => there.includes(one));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A terrain from the reader's disk becomes a session, as a job with progress.
 import {type Call, type Job, json, Problem, send, type Session, sessionPath, upload} from './api';
-import type {App} from './app';
+import {type App, Said} from './app';
 
 const TYPES: Record<string, string> = {
   tif: 'image/tiff', tiff: 'image/tiff', json: 'application/json', glb: 'model/gltf-binary', gltf: 'model/gltf+json',
@@ -29,13 +29,28 @@ export class Upload {
   async take(file: File) {
     const ending = file.name.slice(file.name.lastIndexOf('.') + 1).toLowerCase();
     const stem = file.name.slice(0, -(ending.length + 1)).toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '').slice(0, 40) || 'terrain';
+    if (this.progress) throw new Said(`${file.name} was not taken: another file is on its way. One after the other, please.`);
     const taken = new Set(this.app.sessions.map((session) => session.id));
-    let id = stem;
-    for (let n = 2; taken.has(id); ++n) id = `${stem}-${n}`;
+    for (let left = 20; ; --left) {
+      let id = stem;
+      for (let n = 2; taken.has(id); ++n) id = `${stem}-${n}`;
+      try {
+        await this.put(id, file, TYPES[ending] || file.type || 'application/octet-stream');
+        await this.app.listSessions();
+        return await this.app.open(id);
+      } catch (error) {
+        // By somebody since the list was read, or by one whose terrains are not shown here.
+        if (!(error instanceof Problem && error.word === 'id-taken' && left > 0)) throw error;
+        taken.add(id);
+      }
+    }
+  }
+
+  private async put(id: string, file: File, type: string) {
     const call: Call = {
       method: 'PUT', path: `/v1/sessions/${id}`, query: Object.fromEntries(Object.entries(this.options).filter(([, value]) => value !== '')),
       body: file, file: file.name,
-      headers: {'Content-Type': TYPES[ending] || file.type || 'application/octet-stream', Prefer: 'respond-async'},
+      headers: {'Content-Type': type, Prefer: 'respond-async'},
     };
     this.app.note(call);
     try {
@@ -49,8 +64,6 @@ export class Upload {
       this.job = this.sending = null;
       this.app.tell('progress');
     }
-    await this.app.listSessions();
-    await this.app.open(id);
   }
 
   /** Until the job ends. */
