@@ -59,6 +59,27 @@ async function drawSquareWithoutPromise(view) {
   await view.page.locator('#geojson').setInputFiles({name: 'square.geojson', mimeType: 'application/geo+json', buffer: Buffer.from(JSON.stringify(SQUARE))});
 }
 
+viewTest('never does an edit twice whose answer was lost', {expected: UNREACHED}, async (view, id) => {
+  await drawSquare(view);
+  await view.page.route('**/polygons*', async (route) => {
+    await route.fetch();
+    await route.abort();
+  }, {times: 1});
+  await button(view, 'Integrate').click();
+  await told(view).getByText('The server does not answer').waitFor();
+  assert.equal((await stand.client.session(id)).version, 2, 'it was made, but nobody here knows');
+  await button(view, 'Try again').click();
+  await view.page.waitForFunction(() => window.tinsmith.draft.measured);
+  await view.rest();
+  const {version, polygons} = await stand.client.session(id);
+  assert.deepEqual([version, polygons, await told(view).textContent()], [2, 1, '']);
+  await assertSameMesh(view, id);
+  // The same shape once more, because it is wished for, is another edit.
+  await drawSquare(view);
+  await integrate(view);
+  assert.equal((await stand.client.session(id)).polygons, 2);
+});
+
 viewTest('never does an edit twice whose aftermath was lost', {expected: UNREACHED}, async (view, id) => {
   await drawSquare(view);
   await view.page.route('**/regions*', (route) => route.abort());

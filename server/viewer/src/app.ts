@@ -7,6 +7,7 @@ import {type Delta, readDelta} from './delta';
 import {placesOf} from './fault_place';
 import {GroundIndex} from './ground_index';
 import {Mesh} from './mesh';
+import {Once} from './once';
 
 export type Topic = 'sessions' | 'session' | 'mesh' | 'regions' | 'history' | 'draft' | 'options' | 'report' | 'edit' |
   'profile' | 'problem' | 'calls' | 'selection' | 'hover' | 'compare' | 'look' | 'progress' | 'tab';
@@ -51,6 +52,7 @@ export class App {
   say: (text: string) => void = () => {};
   private etag = '';
   private opening = 0;
+  private readonly once = new Once();
   private readonly listeners = new Map<Topic, (() => void)[]>();
 
   on(topics: Topic[], call: () => void) {
@@ -278,8 +280,14 @@ export class App {
     const {mesh} = this;
     const full = {...call, headers: {...call.headers, Accept: DELTA, 'If-Match': this.etag}};
     this.note(full);
-    const response = await send(full);
+    const response = await this.once.send(full);
+    if (!response.headers.get('Content-Type')?.startsWith(DELTA)) {
+      // Done before, and of its answer only the report is left.
+      await this.catchUp();
+      throw new Superseded();
+    }
     const delta = readDelta(await bytesOf(response));
+    this.once.isAnswered();
     const answer = performance.now() - begin;
     // Another terrain was opened meanwhile: this one has its edit.
     if (mesh !== this.mesh) throw new Superseded();
