@@ -21,7 +21,7 @@ const FORM = 'multipart/form-data';
 const ABOUT_A_JOB = ['getJob', 'getJobResult', 'deleteJob', 'listJobs'];
 
 const JSON_TYPE = 'application/json';
-const parcel = {type: JSON_TYPE, example: {value: {type: 'Polygon', coordinates: [[[2, 2], [5, 2], [5, 5], [2, 2]]]}}};
+const parcel = {type: JSON_TYPE, schema: {$ref: '#/components/schemas/GeoJson'}, example: {value: {type: 'Polygon', coordinates: [[[2, 2], [5, 2], [5, 5], [2, 2]]]}}};
 
 /** What the examples of parameters do not say: [operation, query or path, media type that comes, body]. */
 const MORE = [
