@@ -77,20 +77,27 @@ std::string write_elevation(const AnswerHead& head, core::Point2 at, const core:
 }
 
 std::string write_elevations(const AnswerHead& head,
-                             std::span<const std::optional<core::Spot>> spots) {
+                             std::span<const std::optional<core::Spot>> spots,
+                             std::span<const core::Point2> brought) {
     std::string out = opened(json_of(head));
-    out.reserve(out.size() + spots.size() * 48 + 16);
+    out.reserve(out.size() + spots.size() * (brought.empty() ? 48 : 100) + 16);
     out += ",\"points\":[";
     for (std::size_t i = 0; i < spots.size(); ++i) {
         if (i > 0) out.push_back(',');
-        if (!spots[i]) {
-            out += R"({"elevation":null,"triangle":null,"reason":"outside-mesh"})";
-            continue;
+        if (spots[i]) {
+            out += "{\"elevation\":";
+            json::append_coordinate(out, spots[i]->elevation);
+            out += ",\"triangle\":";
+            json::append_number(out, spots[i]->triangle.value);
+        } else {
+            out += R"({"elevation":null,"triangle":null,"reason":"outside-mesh")";
         }
-        out += "{\"elevation\":";
-        json::append_coordinate(out, spots[i]->elevation);
-        out += ",\"triangle\":";
-        json::append_number(out, spots[i]->triangle.value);
+        if (i < brought.size()) {
+            out += ",\"x\":";
+            json::append_coordinate(out, brought[i].x);
+            out += ",\"y\":";
+            json::append_coordinate(out, brought[i].y);
+        }
         out.push_back('}');
     }
     return out + "]}\n";

@@ -36,9 +36,11 @@ struct VolumeView {
 /// All bodies are JSON texts that end with a newline. Numbers read back to the same double.
 std::string write_elevation(const AnswerHead& head, core::Point2 at, const core::Spot& spot,
                             std::span<const std::string> polygons);
-/// One entry for each point asked for; null and a reason where that is outside the mesh.
+/// One entry for each point asked for; null and a reason where that is outside the mesh. `brought`:
+/// where the points lie in the session's system, one for each, or none to leave that out.
 std::string write_elevations(const AnswerHead& head,
-                             std::span<const std::optional<core::Spot>> spots);
+                             std::span<const std::optional<core::Spot>> spots,
+                             std::span<const core::Point2> brought = {});
 std::string write_profile(const AnswerHead& head, const core::Profile& profile);
 std::string write_volume(const VolumeView& view);
 

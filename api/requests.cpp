@@ -25,6 +25,7 @@ constexpr std::array kPolygonTable{
     OptionRow{"lock", "true or false"},
     OptionRow{"crs", "a name such as EPSG:32616"},
     OptionRow{"dry_run", "true or false"},
+    OptionRow{"angles", "true or false"},
 };
 
 constexpr std::array kMeshTable{
@@ -92,6 +93,8 @@ void read_polygon_option(const NamedOption& option, PolygonOptions& out, OptionF
         read_crs(option, out, faults);
     } else if (option.name == "dry_run") {
         read_bool(option, out.dry_run, faults);
+    } else if (option.name == "angles") {
+        read_bool(option, out.angles, faults);
     } else {
         faults.add_unknown(option, kPolygonNames);
     }

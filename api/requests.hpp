@@ -30,7 +30,8 @@ struct PolygonOptions {
     bool own_elevations = false;       ///< the positions bring z; otherwise they are draped
     core::Winding winding = core::Winding::EvenOdd;
     bool dry_run = false;
-    std::string crs;  ///< of the polygons, normalised; empty: the session's
+    bool angles = false;  ///< the report counts smallest angles
+    std::string crs;      ///< of the polygons, normalised; empty: the session's
 };
 
 /// The options of a polygons request by name.

@@ -155,6 +155,11 @@ std::string write_report(const ReportView& view) {
         {"time_ms",
          {{"locate", times.locate}, {"integrate", times.integrate}, {"improve", times.improve}}}};
     if (view.repairs) json["repairs"] = json_of_repairs(*view.repairs);
+    if (view.angles) {
+        json["smallest_angles"] = {{"step_deg", core::kAngleStep},
+                                   {"before", view.angles->before},
+                                   {"after", view.angles->after}};
+    }
     return text_of(json);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/integrate/angle_counts.hpp"
 #include "core/integrate/report.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/mesh/tin.hpp"
@@ -43,6 +44,7 @@ struct ReportView {
     const core::Report& report;
     /// Of the terrain, where it came with the request and mending was asked for.
     std::optional<std::vector<core::Repair>> repairs = std::nullopt;
+    std::optional<core::AngleCounts> angles = std::nullopt;  ///< where they were asked for
 };
 
 /// All bodies are JSON texts that end with a newline. Numbers read back to the same double.

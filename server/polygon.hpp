@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "api/formats/geojson.hpp"
+#include "core/integrate/angle_counts.hpp"
 #include "core/integrate/options.hpp"
 #include "core/integrate/report.hpp"
 #include "core/integrate/shape.hpp"
@@ -69,8 +70,9 @@ struct PolygonEdit {
     core::Winding winding = core::Winding::EvenOdd;
     core::IntegrateOptions options;
     bool dry_run = false;
-    bool want_mesh = false;   ///< the answer shall hold the mesh that came of it
-    bool want_delta = false;  ///< the answer shall hold what changed; not of a dry run
+    bool want_mesh = false;    ///< the answer shall hold the mesh that came of it
+    bool want_delta = false;   ///< the answer shall hold what changed; not of a dry run
+    bool want_angles = false;  ///< the answer shall count smallest angles
     std::optional<std::uint64_t> expected_version;  ///< from If-Match
     std::size_t max_triangles = SIZE_MAX;           ///< of the session after the edit
 };
@@ -81,7 +83,8 @@ struct PolygonResult {
     std::shared_ptr<const core::Report> report;
     /// If it was wanted. Absent all the same where memory ran out after the edit was made.
     std::optional<core::MeshData> mesh;
-    std::optional<api::MeshDelta> delta;  ///< likewise
+    std::optional<api::MeshDelta> delta;      ///< likewise
+    std::optional<core::AngleCounts> angles;  ///< likewise
 };
 
 struct VersionMismatch {

@@ -28,6 +28,7 @@ std::vector<api::NamedOption> all_options(std::vector<api::NamedOption> given,
 PolygonEdit edit_of(std::vector<api::RequestedShape>& shapes, const api::PolygonOptions& options) {
     PolygonEdit edit;
     edit.dry_run = options.dry_run;
+    edit.want_angles = options.angles;
     edit.winding = options.winding;
     edit.options = options.integrate;
     for (api::RequestedShape& shape : shapes) {

@@ -232,6 +232,7 @@ PolygonOutcome Session::integrate(PolygonEdit edit) {
     refresh_view();
     if (edit.want_mesh) result.mesh = mesh_if_possible();
     if (edit.want_delta) result.delta = delta_if_possible(before);
+    if (edit.want_angles) result.angles = angles_if_possible((*applied)->undo);
     return result;
 }
 
@@ -239,6 +240,14 @@ PolygonOutcome Session::integrate(PolygonEdit edit) {
 std::optional<core::MeshData> Session::mesh_if_possible() const {
     try {
         return tin_.to_data();
+    } catch (const std::bad_alloc&) {
+        return std::nullopt;
+    }
+}
+
+std::optional<core::AngleCounts> Session::angles_if_possible(const core::Undo& undo) const {
+    try {
+        return core::count_angles(tin_, undo);
     } catch (const std::bad_alloc&) {
         return std::nullopt;
     }
@@ -254,8 +263,10 @@ PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {
     lock.unlock();
     core::IntegrateOptions options = edit.options;
     options.max_new_triangles = limits_of(edit, trial).max_new_triangles;
-    auto report = core::integrate(trial, edit.shapes, options);
+    core::Undo undo;
+    auto report = core::integrate(trial, edit.shapes, options, edit.want_angles ? &undo : nullptr);
     if (!report) return std::move(report.errors());
+    if (edit.want_angles) result.angles = core::count_angles(trial, undo);
     result.report = std::make_shared<core::Report>(std::move(*report));
     if (edit.want_mesh) result.mesh = trial.to_data();
     return result;

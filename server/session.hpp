@@ -207,6 +207,7 @@ class Session {
                           Replacement replacement);
     bool brought_back(std::span<const AppliedPtr> taken, std::span<const AppliedPtr> done) noexcept;
     std::optional<core::MeshData> mesh_if_possible() const;
+    std::optional<core::AngleCounts> angles_if_possible(const core::Undo& undo) const;
     std::optional<api::MeshDelta> delta_if_possible(std::uint64_t from) const;
     api::MeshDelta delta_from(const Change& start) const;
     std::uint64_t version() const { return history_.version(); }

@@ -102,6 +102,7 @@ api::SessionView SessionStore::view(const Session& session) const {
 api::SessionView SessionStore::view_of_entry(const Entry& entry) const {
     api::SessionView view =
         entry.session ? entry.session->view() : view_of(entry.facts, entry.counts);
+    // The page knows it by how it begins.
     if (!entry.damage.empty()) view.notes.push_back("Out of service: " + entry.damage);
     if (limits_.session_ttl > 0)
         view.expires = last_use(entry) + static_cast<std::int64_t>(limits_.session_ttl);

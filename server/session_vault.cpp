@@ -223,6 +223,7 @@ LoadedSession SessionVault::load(const std::string& birth) {
     const auto other = std::ranges::find_if(
         stored.tail, [](const JournalEntry& entry) { return entry.algorithm != core::kAlgorithm; });
     if (other != stored.tail.end()) {
+        // The page knows it by how it begins.
         loaded.read_only =
             "This session is read-only: it is as version " + std::to_string(stored.head.version) +
             " was. Later changes, up to " + std::to_string(stored.tail.back().version) +

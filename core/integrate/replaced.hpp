@@ -25,6 +25,11 @@ class Replaced {
     std::size_t vertex_count() const { return vertex_count_; }
     /// How many constraint splits there were.
     std::size_t split_count() const { return split_count_; }
+    /// Slots of triangles that were there before and that anything of was changed, be it a link
+    /// alone, with what they held; in order of slot.
+    const std::vector<std::pair<TriangleId, const Tin::Triangle*>>& recorded() const {
+        return old_;
+    }
     /// The corners of the triangles that are no more.
     const std::vector<std::array<VertexId, 3>>& removed() const { return removed_; }
     /// The triangles in their place.

@@ -125,7 +125,7 @@ int write_results(const IntegrateConfig& config, const Session& session,
     }
     const std::string report =
         api::write_report({session.facts().name, result.version, dry_run, result.polygon_ids,
-                           *result.report, session.facts().repairs});
+                           *result.report, session.facts().repairs, result.angles});
     const bool done = write_output(config.output, std::get<api::GltfResult>(written).bytes) &&
                       write_output(config.report, report);
     return done ? kExitOk : kExitRefused;

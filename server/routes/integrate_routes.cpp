@@ -159,7 +159,8 @@ Response send(Services& services, const Request& request, const Session& session
                                             dry_run,
                                             result.polygon_ids,
                                             *result.report,
-                                            session.facts().repairs}));
+                                            session.facts().repairs,
+                                            result.angles}));
     }
     if (!result.mesh) {
         return refuse(request, api::ProblemType::OutOfMemory,
@@ -201,6 +202,7 @@ std::optional<Response> refusal_of_dry_regions(const Request& request, bool dry_
 Response integrate(Services& services, const Request& request, LoadedTerrain terrain,
                    PolygonWork work, std::size_t type, const api::MeshOptions& options) {
     if (auto refusal = refusal_of_dry_regions(request, work.edit.dry_run, options)) return *refusal;
+    if (work.edit.want_angles && type != 0) return refuse_angles_of_mesh(request);
     const std::size_t mesh_bytes = terrain.tin.memory_bytes();
     const auto memory = require_memory(services, request,
                                        mesh_bytes + (type != 0 ? bytes_to_encode(mesh_bytes) : 0));

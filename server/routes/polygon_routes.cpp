@@ -29,8 +29,9 @@ std::optional<Response> refusal_of_type(const Request& request) {
 }
 
 Response send_report(const Session& session, const PolygonResult& result, bool dry_run) {
-    return ok(kJson, api::write_report({session.facts().id, result.version, dry_run,
-                                        result.polygon_ids, *result.report}));
+    return ok(kJson,
+              api::write_report({session.facts().id, result.version, dry_run, result.polygon_ids,
+                                 *result.report, std::nullopt, result.angles}));
 }
 
 /// GeoJSON and JSON differ in their type alone, and so have tags of their own.
@@ -92,6 +93,7 @@ Response integrate_polygons(Services& services, const Request& request,
     if (dry_run && as_delta) {
         return refuse_delta_of_dry_run(request);
     }
+    if (work->edit.want_angles && (as_mesh || as_delta)) return refuse_angles_of_mesh(request);
     const std::size_t mesh_bytes = session.mesh_bytes();
     const auto memory =
         require_memory(services, request,

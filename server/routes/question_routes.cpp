@@ -148,7 +148,9 @@ Response ask_elevations(Services& services, const Request& request,
         return refuse_faults(request, api::FaultKind::Invalid, std::move(misplaced));
     const SpotsAnswer spots = spots_in(session, *points);
     return answer(session, spots.version,
-                  api::write_elevations(head_of(session, spots.version), spots.spots));
+                  api::write_elevations(
+                      head_of(session, spots.version), spots.spots,
+                      options->crs.empty() ? std::span<const core::Point2>{} : std::span{*points}));
 }
 
 Response ask_profile(Services& services, const Request& request, const PathArguments& arguments) {

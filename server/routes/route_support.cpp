@@ -178,6 +178,12 @@ Response refuse_delta_of_dry_run(const Request& request) {
                   "ask for application/json or model/gltf-binary.");
 }
 
+Response refuse_angles_of_mesh(const Request& request) {
+    return refuse(request, api::ProblemType::InvalidParameter,
+                  "The counts of angles stand in the report: leave angles out, or ask for "
+                  "application/json.");
+}
+
 Step<bool> require_flag(const Request& request, const std::string& name) {
     const auto flag = request.parameter(name);
     if (!flag || *flag == "false") return false;

@@ -79,6 +79,9 @@ Response mesh_after(Metrics& metrics, const Request& request, const Session& ses
 /// 400: a dry run makes no version.
 Response refuse_delta_of_dry_run(const Request& request);
 
+/// 400: a mesh has no place for what the report counts.
+Response refuse_angles_of_mesh(const Request& request);
+
 /// A parameter that is true or false; false where it is not given.
 Step<bool> require_flag(const Request& request, const std::string& name);
 

@@ -20,8 +20,12 @@ const USUAL = ['putSession', 'integratePolygons'];
 const FORM = 'multipart/form-data';
 const ABOUT_A_JOB = ['getJob', 'getJobResult', 'deleteJob', 'listJobs'];
 
-/** What the examples of parameters do not say: [operation, query or path, media type that comes]. */
+const JSON_TYPE = 'application/json';
+const parcel = {type: JSON_TYPE, schema: {$ref: '#/components/schemas/GeoJson'}, example: {value: {type: 'Polygon', coordinates: [[[2, 2], [5, 2], [5, 5], [2, 2]]]}}};
+
+/** What the examples of parameters do not say: [operation, query or path, media type that comes, body]. */
 const MORE = [
+  ['integratePolygons', {angles: true}, 'application/json', parcel],
   ['getMesh', {since: 1}, 'application/json'],
   ['getMesh', {since: 1}, 'application/vnd.tinsmith.delta'],
   ['getChange', {version: 1}, 'application/json'],
@@ -93,7 +97,7 @@ export function exampleCases(description) {
     // Of a job's result no more is described than that it is the answer of its request.
     const types = Object.keys(operation.responses[status]?.content ?? {'application/json': {}});
     const own = MORE.filter(([id]) => id === operation.operationId)
-      .map(([id, values, type]) => ({id, values, type, name: Object.entries(values)[0].join('_'), body: {}}));
+      .map(([id, values, type, body = {}]) => ({id, values, type, name: Object.entries(values)[0].join('_'), body}));
     const plain = description.bodies(operation).flatMap((body) => types
       .filter((type) => id(operation) !== 'getDocsFile' && !own.some((one) => one.type === type && type.includes('delta')))
       .map((type) => ({id: id(operation), values: {}, type, name: body.name ?? id(operation), body})));
@@ -124,8 +128,6 @@ async function answerOf(operation, response) {
     json: isJson ? JSON.parse(bytes.toString('utf8')) : undefined};
 }
 
-const JSON_TYPE = 'application/json';
-const parcel = {type: JSON_TYPE, example: {value: {type: 'Polygon', coordinates: [[[2, 2], [5, 2], [5, 5], [2, 2]]]}}};
 const broken = (text) => ({raw: {body: text}, headers: {'Content-Type': JSON_TYPE}});
 
 /** [problem, operation, request]: sent in order to a session with one polygon, which they leave as it is. */

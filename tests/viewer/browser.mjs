@@ -8,7 +8,7 @@ import {chromium} from 'playwright-core';
 import {ask} from '../support/program.mjs';
 
 const CHROMIUM = process.env.CHROMIUM ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync) ?? 'chromium';
-const PATIENCE = 60_000;
+const PATIENCE = Number(process.env.PATIENCE ?? 60_000);
 
 export function launch() {
   return chromium.launch({executablePath: CHROMIUM, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
@@ -45,8 +45,9 @@ export class Client {
   }
 }
 
-/** A page on one session, or where there is none yet (`empty`), at rest. */
-export async function openPage(browser, origin, session, {expected = [], empty = false, ...options} = {}) {
+/** A page on one session, or where there is none yet (`empty`), at rest. `prepare` sees the page before
+    it asks for anything, `meet` before it is at rest. */
+export async function openPage(browser, origin, session, {expected = [], empty = false, prepare = null, meet = null, ...options} = {}) {
   const context = await browser.newContext({viewport: {width: 1280, height: 720}, ...options});
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE);
@@ -60,7 +61,9 @@ export async function openPage(browser, origin, session, {expected = [], empty =
   await page.addInitScript(() => {
     document.addEventListener('securitypolicyviolation', (event) => { console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`); });
   });
+  await prepare?.(page);
   await page.goto(`${origin}/#${session}`);
+  await meet?.(page);
   const rest = () => page.waitForFunction((none) => window.tinsmith && (none || window.tinsmith.app.session) && window.tinsmith.app.busy === 0 && !window.tinsmith.stage.isEconomical, empty);
   await rest();
   return {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import type {Report} from './api';
 import type {Delta} from './delta';
 import type {Mesh} from './mesh';
 
@@ -13,6 +14,15 @@ export interface Angles { bars: number[]; count: number; least: number }
 export interface AngleChange { before: Angles; after: Angles }
 
 const none = (): Angles => ({bars: new Array<number>(BARS).fill(0), count: 0, least: Infinity});
+
+/** As a report has them that was asked for `angles`; null where it was not. */
+export function anglesOf(report: Report): AngleChange | null {
+  const counts = report.smallest_angles;
+  if (!counts || counts.step_deg !== BAR_DEGREES) return null;
+  const shapes = report.polygons.flatMap(({smallest_angle_deg: angle}) => (angle?.after ? [angle] : []));
+  const of = (bars: number[], when: 'before' | 'after'): Angles => ({bars, count: bars.reduce((sum, n) => sum + n, 0), least: Math.min(...shapes.map((angle) => angle[when]))});
+  return {before: of(counts.before, 'before'), after: of(counts.after, 'after')};
+}
 
 /** In space, in degrees. */
 function smallestAngle({positions: p, corners: c}: Mesh, t: number): number {
@@ -30,7 +40,8 @@ function smallestAngle({positions: p, corners: c}: Mesh, t: number): number {
 }
 
 function add(to: Angles, angle: number) {
-  ++to.bars[Math.min(BARS - 1, Math.floor(angle / BAR_DEGREES))];
+  // What rounding leaves just below a step belongs to it, as for the server.
+  ++to.bars[Math.min(BARS - 1, Math.floor(angle / BAR_DEGREES + 1e-9))];
   ++to.count;
   if (angle < to.least) to.least = angle;
 }

@@ -1,21 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page knows, and who wants to hear when it changes.
-import {type Call, curlLine, DELTA, type Feature, type Fault, type History, json, pages, Problem, type Region, send,
+import {bytesOf, type Call, curlLine, DELTA, type Feature, type Fault, type History, json, pages, Problem, type Region, send,
   type Session, sessionPath} from './api';
 import {type AngleChange, watchAngles} from './angles';
 import {type Delta, readDelta} from './delta';
-import {placeOf} from './fault_place';
+import {placesOf} from './fault_place';
 import {GroundIndex} from './ground_index';
 import {Mesh} from './mesh';
+import {Once} from './once';
 
 export type Topic = 'sessions' | 'session' | 'mesh' | 'regions' | 'history' | 'draft' | 'options' | 'report' | 'edit' |
   'profile' | 'problem' | 'calls' | 'selection' | 'hover' | 'compare' | 'look' | 'progress' | 'tab';
 
 export interface Mark { x: number; y: number; text: string }
-export interface Told { title: string; detail: string; errors: Fault[]; conflict: boolean; retry: (() => void) | null }
+export interface Told { title: string; detail: string; errors: Fault[]; conflict: boolean; retry: (() => void) | null; retryText: string }
 /** What an edit took, from the click to the pixels; `answer`: until the server's answer was there. */
 export interface Cost { bytes: number; ms: number; answer: number }
 export interface Edited { version: number; cost: Cost; angles: AngleChange | null; history: string | null }
+
+/** What is wrong, in words for the reader. */
+export class Said extends Error {}
+
+/** What was asked for is about a terrain that is not on the screen any more, or is done already. */
+class Superseded extends Error {}
+
+/** The server did it; what the page shows of it is behind. */
+class DoneButBehind extends Error {}
+
+const notThere = (id: string) => `There is no terrain "${id}" any more: somebody has deleted it, or its time has run out.`;
 
 export class App {
   sessions: Session[] = [];
@@ -29,12 +41,18 @@ export class App {
   problem: Told | null = null;
   calls: Call[] = [];
   busy = 0;
+  /** An edit is under way: another would be of a version that is about to go. */
+  editing = false;
   tab = 'draw';
   /** Patches the buffers and draws; set by the view. */
   show: (delta: Delta, isNew: boolean) => Promise<void> = async () => {};
+  /** Takes the terrain off the screen; set by the view. */
+  clear: () => void = () => {};
   /** For the live region. */
   say: (text: string) => void = () => {};
   private etag = '';
+  private opening = 0;
+  private readonly once = new Once();
   private readonly listeners = new Map<Topic, (() => void)[]>();
 
   on(topics: Topic[], call: () => void) {
@@ -49,6 +67,11 @@ export class App {
   note(call: Call) {
     this.calls = [call, ...this.calls.filter((old) => curlLine(old) !== curlLine(call))].slice(0, 30);
     this.tell('calls');
+  }
+
+  /** Its last changes were made by another version of the server: it can be read and copied. */
+  get isReadOnly() {
+    return (this.session?.notes ?? []).some((note) => note.startsWith('This session is read-only'));
   }
 
   path(rest = '') {
@@ -73,7 +96,21 @@ export class App {
     }
   }
 
-  /** Runs what a button asks for; what goes wrong is told on the page. */
+  /** Looks after the terrain and the list when the reader comes back. What is told stays told; that the
+      terrain is gone is told. */
+  async lookAgain() {
+    await this.quietly(async () => {
+      try {
+        await this.catchUp();
+      } catch (error) {
+        if (error instanceof Problem && error.word === 'no-such-session') await this.refuse(error, null, () => {});
+      }
+      await this.listSessions();
+    });
+  }
+
+  /** Runs what a button asks for; what goes wrong is told on the page. `retry` is for a conflict; what
+      a server could not do just now can be tried again as it was. */
   async attempt<T>(what: () => Promise<T>, retry: (() => void) | null = null): Promise<T | undefined> {
     ++this.busy;
     this.problem = null;
@@ -81,7 +118,7 @@ export class App {
     try {
       return await what();
     } catch (error) {
-      await this.refuse(error, retry);
+      if (!(error instanceof Superseded)) await this.refuse(error, retry, () => { void this.attempt(what, retry); });
       return undefined;
     } finally {
       --this.busy;
@@ -89,21 +126,44 @@ export class App {
     }
   }
 
-  private async refuse(error: unknown, retry: (() => void) | null) {
-    if (!(error instanceof Problem)) {
-      this.problem = {title: 'Something went wrong on this page', detail: String(error), errors: [], conflict: false, retry: null};
+  private async refuse(error: unknown, retry: (() => void) | null, again: () => void) {
+    const told: Told = {title: '', detail: '', errors: [], conflict: false, retry: null, retryText: 'Try again'};
+    if (error instanceof DoneButBehind) {
+      Object.assign(told, {title: 'It is done, but not all of it could be fetched', detail: error.message,
+        retry: () => { void this.attempt(() => this.refresh()); }, retryText: 'Fetch it'});
+    } else if (error instanceof Said) {
+      Object.assign(told, {title: 'That cannot be done', detail: error.message});
+    } else if (!(error instanceof Problem)) {
+      Object.assign(told, {title: 'Something went wrong on this page', detail: String(error)});
       console.warn(error);
     } else if (error.status === 412) {
-      await this.catchUp().catch(() => {});
-      this.problem = {
-        title: 'Someone else changed this terrain',
-        detail: `Your request was made for an older version and nothing of it was done. The changes have been fetched: you see version ${this.mesh.version} now.`,
-        errors: [], conflict: true, retry};
+      const isFetched = await this.catchUp().then(() => true, () => false);
+      Object.assign(told, {
+        title: 'Someone else changed this terrain', conflict: true,
+        detail: `Your request was made for an older version and nothing of it was done. ${isFetched
+          ? `The changes have been fetched: you see version ${this.mesh.version} now.` : 'The changes could not be fetched.'}`,
+        ...(isFetched && retry && {retry, retryText: 'Do it on this version'})});
+    } else if (error.word === 'no-such-session' && this.session && error.call?.path.startsWith(this.path())) {
+      const {id} = this.session;
+      this.close();
+      await this.listSessions().catch(() => {});
+      Object.assign(told, {title: 'This terrain is gone', detail: notThere(id)});
     } else {
-      const errors = error.errors.map((fault) => ({...fault, coordinate: placeOf(fault, error.call, this.session?.crs ?? '')}));
-      this.problem = {title: error.title, detail: error.message, errors, conflict: false, retry: null};
+      const wait = error.retryAfter ? ` Try again in ${error.retryAfter} s.` : '';
+      Object.assign(told, {title: error.title, detail: error.message + wait, errors: error.errors.map((fault) => ({...fault, coordinate: undefined})),
+        ...((error.isPassing || error.status === 401) && {retry: again})});
     }
-    this.say(`${this.problem.title}. ${this.problem.detail}`);
+    this.problem = told;
+    this.say(`${told.title}. ${told.detail}`);
+    this.tell('problem');
+    if (error instanceof Problem && told.errors.length > 0) await this.place(told, error);
+  }
+
+  /** Marks faults on the terrain, once it is known where they are there. */
+  private async place(told: Told, problem: Problem) {
+    const places = await placesOf(this, problem);
+    if (this.problem !== told || places.every((place) => !place)) return;
+    told.errors = told.errors.map((fault, i) => ({...fault, coordinate: places[i]}));
     this.tell('problem');
   }
 
@@ -113,10 +173,12 @@ export class App {
   }
 
   async open(id: string) {
+    const turn = ++this.opening;
     const call: Call = {method: 'GET', path: sessionPath(id, '/mesh'), query: {since: '0'}, headers: {Accept: DELTA}};
     const session = await json<Session>({method: 'GET', path: sessionPath(id)});
     const response = await send(call);
-    const delta = readDelta(await response.arrayBuffer());
+    const delta = readDelta(await bytesOf(response));
+    if (turn !== this.opening) throw new Superseded();
     this.note(call);
     this.session = session;
     this.etag = tagOf(response);
@@ -134,11 +196,17 @@ export class App {
 
   /** The session gone or never there. */
   close() {
+    ++this.opening;
     this.session = null;
     this.history = null;
     this.regions = [];
     this.features = [];
-    this.tell('session', 'regions', 'history');
+    this.selected = null;
+    this.mesh = new Mesh();
+    this.ground = new GroundIndex(this.mesh);
+    location.replace('#');
+    this.clear();
+    this.tell('session', 'regions', 'history', 'selection', 'mesh');
   }
 
   /** Everything beside the mesh: figures, polygons, regions, history. */
@@ -148,7 +216,7 @@ export class App {
     const [session, features, regions, history] = await Promise.all([
       json<Session>({method: 'GET', path}), pages<Feature>(`${path}/polygons`, 'features'),
       pages<Region>(`${path}/regions`, 'regions'), wholeHistory(path)]);
-    if (session.id !== this.session.id) return;
+    if (session.id !== this.session?.id) return;
     for (const region of regions) region.triangles.sort((a, b) => a - b);
     [this.session, this.features, this.regions, this.history] = [session, features, regions, history];
     if (!regions.some((region) => region.polygon === this.selected)) this.selected = null;
@@ -164,10 +232,22 @@ export class App {
 
   /** Fetches what others have changed. */
   async catchUp() {
-    const call: Call = {method: 'GET', path: this.path('/mesh'), query: {since: String(this.mesh.version)}, headers: {Accept: DELTA}};
-    const response = await send(call);
-    const delta = readDelta(await response.arrayBuffer());
-    if (delta.to === this.mesh.version && !delta.whole) return;
+    const {mesh, session} = this;
+    if (!session) return;
+    const call: Call = {method: 'GET', path: this.path('/mesh'), query: {since: String(mesh.version)}, headers: {Accept: DELTA}};
+    let response: Response;
+    try {
+      response = await send(call);
+    } catch (error) {
+      // So much has happened that the version on the screen is not kept any more.
+      if (error instanceof Problem && error.status === 410) return this.open(session.id);
+      throw error;
+    }
+    const delta = readDelta(await bytesOf(response));
+    if (mesh !== this.mesh) throw new Superseded();
+    // Deleted, and made anew under its name.
+    if (birthOf(tagOf(response)) !== birthOf(this.etag)) return this.open(session.id);
+    if (delta.to === mesh.version && !delta.whole) return;
     this.note(call);
     await this.take(delta, response);
     await this.refresh();
@@ -184,17 +264,52 @@ export class App {
 
   /** An edit of the version that is on the screen. Its answer is what changed. */
   async edit(call: Call): Promise<Edited> {
+    if (this.editing) throw new Superseded();
+    this.editing = true;
+    this.tell('progress');
+    try {
+      return await this.editAlone(call);
+    } finally {
+      this.editing = false;
+      this.tell('progress');
+    }
+  }
+
+  private async editAlone(call: Call): Promise<Edited> {
     const begin = performance.now();
+    const {mesh} = this;
     const full = {...call, headers: {...call.headers, Accept: DELTA, 'If-Match': this.etag}};
     this.note(full);
-    const response = await send(full);
-    const delta = readDelta(await response.arrayBuffer());
+    const response = await this.once.send(full);
+    if (!response.headers.get('Content-Type')?.startsWith(DELTA)) {
+      // Done before, and of its answer only the report is left.
+      await this.catchUp();
+      throw new Superseded();
+    }
+    const delta = readDelta(await bytesOf(response));
+    this.once.isAnswered();
     const answer = performance.now() - begin;
+    // Another terrain was opened meanwhile: this one has its edit.
+    if (mesh !== this.mesh) throw new Superseded();
     const angles = await this.take(delta, response);
     const cost = {bytes: delta.bytes, ms: performance.now() - begin, answer};
-    await this.refresh();
+    await this.fetchOf(delta.to, () => this.refresh());
     const link = /<([^>]+)>;\s*rel="describedby"/.exec(response.headers.get('Link') ?? '');
     return {version: delta.to, cost, angles, history: link ? link[1] : `${this.path('/history/')}${delta.to}`};
+  }
+
+  /** Fetches what goes with an edit that is made. Where that fails, nobody shall make it once more. */
+  async fetchOf<T>(version: number, what: () => Promise<T>): Promise<T> {
+    try {
+      return await what();
+    } catch (error) {
+      throw new DoneButBehind(`The edit was made: this terrain has version ${version}. ${error instanceof Error ? error.message : error}`);
+    }
+  }
+
+  /** The report of an edit that is made. */
+  reportOf<T>({version, history}: Edited): Promise<T> {
+    return this.fetchOf(version, () => json<T>({method: 'GET', path: history!}));
   }
 }
 
@@ -207,6 +322,9 @@ function holds(list: number[], value: number): boolean {
   }
   return list[low] === value;
 }
+
+/** Sets a session apart from another that had its name before. */
+const birthOf = (tag: string) => tag.slice(0, tag.lastIndexOf('-'));
 
 /** Of the session, without what the representation adds. */
 function tagOf(response: Response) {

@@ -138,7 +138,7 @@ export class Draft {
       if (name === 'crs' && !this.imported) continue;
       if (value !== '' && value !== OF_SERVER[name]) query[name] = value;
     }
-    if (dryRun) query.dry_run = 'true';
+    if (dryRun) Object.assign(query, {dry_run: 'true', angles: 'true'});
     return {
       method: 'POST', path: this.app.path('/polygons'), query, headers: {'Content-Type': GEOJSON},
       body: this.imported ? this.imported.text : JSON.stringify(this.geometry), file: this.imported?.name || undefined,
@@ -172,7 +172,7 @@ export class Draft {
     } finally {
       this.integrating = false;
     }
-    const report = await json<Report>({method: 'GET', path: done.history!});
+    const report = await this.app.reportOf<Report>(done);
     this.measured = {report, cost: done.cost, angles: done.angles};
     this.stale = true;
     this.points = [];

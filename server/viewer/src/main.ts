@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import {App} from './app';
+import {Problem} from './api';
+import {App, Said} from './app';
 import {Compare} from './compare';
 import {CursorView} from './cursor_view';
 import {Draft} from './draft';
@@ -9,24 +10,38 @@ import {buildCalls} from './panels/calls';
 import {buildDraw} from './panels/draw';
 import {buildHead, buildTabs} from './panels/head';
 import {buildHistory, buildUndo} from './panels/history';
+import {buildKey} from './panels/key';
 import {buildProblem} from './panels/problem';
 import {buildProfile} from './panels/profile';
 import {buildRegions} from './panels/regions';
-import {buildTerrain} from './panels/terrain';
+import {buildTerrain, isOutOfService} from './panels/terrain';
 import {Pointer} from './pointer';
 import {Profile} from './profile';
 import {RegionEdit} from './region_edit';
 import {Stage} from './stage';
-import {byId} from './ui';
+import {byId, h} from './ui';
 import {Upload} from './upload';
 import {View} from './view';
 
 const GEOJSON_TYPE = /"type"\s*:\s*"(Feature|FeatureCollection|GeometryCollection|(Multi)?(Point|LineString|Polygon))"/;
 const HEAD_BYTES = 65536;
 
+/** A browser that cannot draw says so where the terrain would be. */
+function makeStage(canvas: HTMLCanvasElement): Stage {
+  try {
+    return new Stage(canvas);
+  } catch (error) {
+    const welcome = byId('welcome');
+    welcome.hidden = false;
+    welcome.replaceChildren(h('h2', {}, 'This browser draws no terrain'),
+      h('p', {}, 'WebGL 2 is missing or switched off. Everything can be done without this page, too: see the ', h('a', {href: 'docs'}, 'API'), '.'));
+    throw error;
+  }
+}
+
 const app = new App();
 const draft = new Draft(app);
-const stage = new Stage(byId<HTMLCanvasElement>('view'));
+const stage = makeStage(byId<HTMLCanvasElement>('view'));
 const view = new View(app, draft, stage);
 const compare = new Compare(app, view.ramp);
 view.compare = compare;
@@ -43,22 +58,28 @@ const isGeoJson = (head: string) => GEOJSON_TYPE.test(head) && !/"(mesh|grid|poi
 function takeShape(name: string, text: string) {
   app.openTab('draw');
   void app.attempt(async () => {
-    try { draft.take(name, text); } catch { throw new Error(`${name || 'What was pasted'} is not JSON.`); }
+    try { draft.take(name, text); } catch { throw new Said(`${name || 'What was pasted'} is not JSON.`); }
     await draft.dryRun();
   });
 }
 
 /** A file is a terrain, or polygons where it is GeoJSON. */
 async function take(file: File) {
-  const isText = /\.(geo)?json$/i.test(file.name);
-  if (isText && isGeoJson(await file.slice(0, HEAD_BYTES).text())) {
-    takeShape(file.name, await file.text());
+  const read = (part: Blob) => part.text().catch(() => { throw new Said(`${file.name} cannot be read: is it still there, and not a folder?`); });
+  const text = await app.attempt(async () => {
+    const isText = /\.(geo)?json$/i.test(file.name);
+    return isText && isGeoJson(await read(file.slice(0, HEAD_BYTES))) ? read(file) : '';
+  });
+  if (text === undefined) return;
+  if (text) {
+    takeShape(file.name, text);
   } else {
     app.openTab('terrain');
     await app.attempt(() => upload.take(file));
   }
 }
 
+buildKey();
 buildHead(app);
 buildUndo(app);
 buildProblem(app, view);
@@ -90,7 +111,8 @@ pointer.onFinish = () => {
 /** What is dropped or pasted: a file, or text that is GeoJSON. */
 function takeFrom(data: DataTransfer | null): boolean {
   const file = data?.files[0], text = data?.getData('text/plain') ?? '';
-  if (file) void take(file);
+  if (data && data.files.length > 1) void app.attempt(() => Promise.reject(new Said('These are several files: drop one at a time.')));
+  else if (file) void take(file);
   else if (isGeoJson(text.slice(0, HEAD_BYTES))) takeShape('', text);
   else return false;
   return true;
@@ -111,15 +133,47 @@ document.addEventListener('paste', (event) => {
 });
 // Others may have changed the terrain while the page was not looked at.
 document.addEventListener('visibilitychange', () => {
-  if (document.visibilityState === 'visible' && app.session && app.busy === 0) void app.attempt(() => app.catchUp());
+  if (document.visibilityState === 'visible' && app.busy === 0) void app.lookAgain();
 });
 
+app.on(['tab'], () => { if (app.tab === 'terrain' && app.session) void app.quietly(() => app.listSessions()); });
+
+/** The terrain that the address names. */
+function wanted(): string {
+  try {
+    return decodeURIComponent(location.hash.slice(1));
+  } catch {
+    return '';
+  }
+}
+addEventListener('hashchange', () => {
+  const id = wanted();
+  if (id && id !== app.session?.id) void app.attempt(() => app.open(id));
+});
+
+/** A server that has just been started reads its sessions first, and says so. */
+async function listWhenReady() {
+  for (let left = 120; ; --left) {
+    try {
+      await app.listSessions();
+      break;
+    } catch (error) {
+      if (!(error instanceof Problem && error.word === 'not-ready' && left > 0)) throw error;
+      view.hint('The server is starting …');
+      await new Promise((resolve) => setTimeout(resolve, 1000 * (error.retryAfter ?? 1)));
+    }
+  }
+  view.hint('');
+}
+
 void app.attempt(async () => {
-  await app.listSessions();
-  const wanted = decodeURIComponent(location.hash.slice(1));
-  const first = [wanted, 'demo', app.sessions[0]?.id].find((id) => app.sessions.some((session) => session.id === id));
+  await listWhenReady();
+  const there = app.sessions.filter((session) => !isOutOfService(session)).map(({id}) => id);
+  const id = wanted();
+  const first = [id, 'demo', there[0]].find((one) => there.includes(one));
   if (first) await app.open(first);
   else { app.close(); app.openTab('terrain'); }
+  if (id && id !== first) throw new Said(`There is no terrain "${id}" here${first ? `: this is ${first}.` : '.'}`);
 });
 // For those who measure: `tinsmith.stage.frames`, and the mesh as it is.
-Object.assign(window, {tinsmith: {app, stage, view, draft, pointer, profile}});
+Object.assign(window, {tinsmith: {app, stage, view, draft, edit, pointer, profile}});

@@ -62,6 +62,8 @@ export class Stage {
     this.controls.zoomToCursor = true;
     this.controls.maxPolarAngle = 1.5;
     this.controls.addEventListener('change', () => { if (!this.fitting) this.moved(); });
+    // The library fills its buffers again, but draws nothing by itself.
+    canvas.addEventListener('webglcontextrestored', () => { this.invalidate(); });
     new ResizeObserver(() => { this.resize(); }).observe(canvas.parentElement!);
     this.resize();
   }

@@ -44,11 +44,11 @@ export class View {
     stage.onView = () => { this.refine(); this.showFacets(); };
     app.show = async (delta, isNew) => {
       if (isNew) {
+        const wireframe = this.terrain?.wireframe ?? false;
         this.terrain?.dispose();
         this.regions.reset();
         this.isFresh = true;
         stage.startAnew();
-        const wireframe = this.terrain?.wireframe ?? false;
         this.terrain = new TerrainView(app.mesh, this.ramp);
         this.terrain.sync(delta);
         this.terrain.wireframe = wireframe;
@@ -66,6 +66,13 @@ export class View {
       this.drawSketch();
       await stage.drawn();
       app.tell('mesh');
+    };
+    app.clear = () => {
+      this.terrain?.dispose();
+      this.terrain = null;
+      this.regions.reset();
+      void this.compare?.load(null);
+      stage.invalidate();
     };
     app.on(['regions'], () => {
       if (!this.terrain) return;

@@ -135,6 +135,7 @@ TEST(OpenApiOptions, AreThoseOfPolygons) {
     EXPECT_EQ(said->own_elevations, unsaid->own_elevations);
     EXPECT_EQ(said->winding, unsaid->winding);
     EXPECT_EQ(said->dry_run, unsaid->dry_run);
+    EXPECT_EQ(said->angles, unsaid->angles);
     EXPECT_EQ(said->crs, unsaid->crs);
     EXPECT_EQ(said->integrate.improve, unsaid->integrate.improve);
     EXPECT_EQ(said->integrate.snap, unsaid->integrate.snap);

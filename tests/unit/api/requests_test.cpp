@@ -35,6 +35,7 @@ TEST(PolygonOptions, AreReadByName) {
                                          {"max_deviation", "0.125", ""},
                                          {"outside", "reject", ""},
                                          {"dry_run", "true", ""},
+                                         {"angles", "true", ""},
                                          {"crs", "urn:ogc:def:crs:EPSG::32616", ""},
                                          {"elevation", "own", ""},
                                          {"on_crossing", "old", ""},
@@ -51,6 +52,7 @@ TEST(PolygonOptions, AreReadByName) {
     EXPECT_TRUE(parsed->integrate.lock);
     EXPECT_EQ(parsed->winding, core::Winding::NonZero);
     EXPECT_TRUE(parsed->dry_run);
+    EXPECT_TRUE(parsed->angles);
     EXPECT_EQ(parsed->crs, "EPSG:32616");
 }
 
@@ -75,6 +77,7 @@ TEST(PolygonOptions, RefuseValuesThatCannotBe) {
                                                           {"winding", ""},
                                                           {"lock", "yes"},
                                                           {"dry_run", "1"},
+                                                          {"angles", "yes"},
                                                           {"outside", "clip"},
                                                           {"crs", "somewhere"}}) {
         EXPECT_EQ(fault_of(name, value), "INVALID_OPTION") << name << "=" << value;

@@ -77,6 +77,18 @@ TEST(WriteReport, HasTheAgreedShape) {
     EXPECT_EQ(body["totals"]["segments"], 92);
     EXPECT_EQ(body["time_ms"],
               json::parse(R"({"locate": 0.25, "integrate": 0.5, "improve": 0.75})"));
+    EXPECT_FALSE(body.contains("smallest_angles")) << "they were not asked for";
+}
+
+TEST(WriteReport, HasTheCountsOfAngles) {
+    const core::Report report;
+    core::AngleCounts counts;
+    counts.before[9] = 2;
+    counts.after = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    const auto body = json::parse(write_report({"s", 4, true, {}, report, std::nullopt, counts}));
+    EXPECT_EQ(body["smallest_angles"], json::parse(R"({"step_deg": 5,
+        "before": [0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0],
+        "after": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]})"));
 }
 
 TEST(WriteMeshJson, ReadsBackToTheSameDoubles) {

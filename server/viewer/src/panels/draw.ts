@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The main job: a shape, what would come of it, and then its edges in the mesh.
-import type {App} from '../app';
+import {type App, Said} from '../app';
 import type {Draft, Kind} from '../draft';
 import {button, field, h, input, number, select, shortUnit} from '../ui';
 import {buildReport} from './report';
@@ -63,7 +63,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
   const pasted = h('textarea', {rows: 4, 'aria-label': 'GeoJSON text', placeholder: '{"type": "Polygon", "coordinates": …}', spellcheck: 'false'});
   const paste = h('details', {}, h('summary', {}, 'Paste GeoJSON'), pasted, button('Take it', () => {
     void app.attempt(async () => {
-      try { draft.take('', pasted.value); } catch { throw new Error('This is not JSON.'); }
+      try { draft.take('', pasted.value); } catch { throw new Said('This is not JSON.'); }
       await draft.dryRun();
     });
   }, {class: 'small'}));
@@ -77,7 +77,8 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
   draft.onChange(() => {
     for (const [kind, element] of kinds) element.setAttribute('aria-pressed', String(draft.kind === kind && draft.drawing));
     const n = draft.points.length;
-    state.textContent = draft.imported ? `${draft.imported.name || 'What was pasted'}, as it is.`
+    state.textContent = app.isReadOnly ? 'This terrain takes no changes; what would come of a shape can be asked.'
+      : draft.imported ? `${draft.imported.name || 'What was pasted'}, as it is.`
       : draft.kind === 'Profile' ? 'Draw a shape, or drop a GeoJSON file on the map.'
       : draft.drawing ? `${number(n)} ${n === 1 ? 'corner' : 'corners'}. Click to add; double-click or Enter finishes, Backspace takes back, Escape cancels.`
       : n > 0 ? `${draft.kind === 'Polygon' ? 'Polygon' : 'Line'} of ${number(n)} corners.` : 'Draw a shape, or drop a GeoJSON file on the map.';
@@ -88,7 +89,7 @@ export function buildDraw(app: App, draft: Draft, take: (file: File) => void): H
     points.hidden = !isOurs || draft.imported !== null;
   });
   // Nothing is done of which there was no report.
-  const lock = () => { go.disabled = dry.disabled || draft.promised === null || draft.stale || draft.drawing; };
+  const lock = () => { go.disabled = dry.disabled || draft.promised === null || draft.stale || draft.drawing || app.editing || app.isReadOnly; };
   app.on(['draft', 'report', 'session', 'mesh', 'progress'], lock);
   app.on(['session'], () => { draft.changed(); });
   return h('div', {}, h('div', {class: 'buttons'}, h('span', {class: 'soft'}, 'Draw'), ...kinds.map(([, element]) => element), h('span', {class: 'soft'}, 'or'), button('GeoJSON…', () => { file.click(); }), file),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's head: which terrain, which version, downloads; and the tabs below it.
-import {type Call, GEOJSON, pages, sessionPath, urlOf} from '../api';
+import {access} from '../access';
+import {bytesOf, type Call, GEOJSON, pages, send, sessionPath, urlOf} from '../api';
 import type {App} from '../app';
 import {byId, h} from '../ui';
 
@@ -18,12 +19,21 @@ const FILES: Download[] = [
   {text: 'Constrained edges, GeoJSON', path: '/constraints', ending: 'constraints.geojson', accept: GEOJSON},
 ];
 
-/** A list that comes by pages becomes one file. */
-async function save(path: string, accept: string, name: string) {
-  const features = await pages(path, 'features', {Accept: accept});
-  const address = URL.createObjectURL(new Blob([JSON.stringify({type: 'FeatureCollection', features})], {type: accept}));
+function save(blob: Blob, name: string) {
+  const address = URL.createObjectURL(blob);
   h('a', {href: address, download: name}).click();
   setTimeout(() => { URL.revokeObjectURL(address); }, 60_000);
+}
+
+/** A list that comes by pages becomes one file. */
+async function saveList(path: string, accept: string, name: string) {
+  const features = await pages(path, 'features', {Accept: accept});
+  save(new Blob([JSON.stringify({type: 'FeatureCollection', features})], {type: accept}), name);
+}
+
+/** A link sends no key. */
+async function saveWithKey(call: Call, name: string) {
+  save(new Blob([await bytesOf(await send(call))]), name);
 }
 
 function buildDownloads(app: App, menu: HTMLDetailsElement) {
@@ -37,9 +47,9 @@ function buildDownloads(app: App, menu: HTMLDetailsElement) {
       return h('a', {href: urlOf(call), download: name, onclick: (event: Event) => {
         app.note(call);
         menu.open = false;
-        if (!accept) return;
+        if (!accept && !access.key) return;
         event.preventDefault();
-        void app.attempt(() => save(call.path, accept, name));
+        void app.attempt(() => (accept ? saveList(call.path, accept, name) : saveWithKey(call, name)));
       }}, text);
     }));
   });
@@ -52,7 +62,7 @@ export function buildHead(app: App) {
     select.replaceChildren(...app.sessions.map((s) => h('option', {value: s.id}, s.name ? `${s.name} – ${s.id}` : s.id)));
     if (!app.session) select.prepend(h('option', {value: ''}, 'No terrain'));
     select.value = app.session?.id ?? '';
-    byId('version').textContent = app.session ? `version ${app.session.version}` : '';
+    byId('version').textContent = app.session ? `version ${app.session.version}${app.isReadOnly ? ', read-only' : ''}` : '';
     document.title = app.session ? `${app.session.name || app.session.id} – Tinsmith` : 'Tinsmith';
   });
   buildDownloads(app, byId<HTMLDetailsElement>('download'));

@@ -58,7 +58,7 @@ export function buildUndo(app: App) {
     element.addEventListener('click', act);
     app.on(['history', 'progress', 'session'], () => {
       const of = app.history?.[name] ?? null;
-      element.disabled = of === null || app.busy > 0;
+      element.disabled = of === null || app.busy > 0 || app.editing || app.isReadOnly;
       element.title = of === null ? `Nothing to ${name}` : `${name === 'undo' ? 'Undo' : 'Redo'} version ${of} (Ctrl+${name === 'undo' ? '' : 'Shift+'}Z)`;
     });
   }

@@ -19,10 +19,10 @@ export function buildProblem(app: App, view: View) {
           view.goTo(at[0], at[1], Math.max(b[3] - b[0], b[4] - b[1]) / 6);
         }, {class: 'small'}));
     });
-    const {retry} = problem;
+    const {retry, retryText} = problem;
     box.append(h('div', {class: problem.conflict ? 'told conflict' : 'told'},
       h('b', {}, problem.title), h('p', {}, problem.detail), faults.length > 0 && h('ul', {}, ...faults),
-      h('div', {class: 'buttons'}, retry && problem.conflict && button('Do it on this version', retry, {class: 'main'}),
+      h('div', {class: 'buttons'}, retry && button(retryText, retry, {class: 'main'}),
         button('Dismiss', () => { app.problem = null; app.tell('problem'); }))));
     box.scrollIntoView({block: 'nearest'});
   });

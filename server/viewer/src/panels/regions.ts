@@ -18,13 +18,14 @@ export function swatch(id: string, isRegion: boolean) {
 
 export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElement {
   const list = h('ul', {class: 'regions', 'aria-label': 'Regions'});
-  const empty = h('p', {class: 'soft'}, 'No polygon is in this mesh yet: draw one, or take a GeoJSON file.');
+  const empty = h('p', {class: 'soft'});
   const chosen = h('div', {hidden: true});
   const facts = h('div');
   chosen.append(facts, buildForm(app, edit), buildVolume(app, edit));
   app.on(['regions', 'selection'], () => {
     const areas = new Map(app.regions.map((region) => [region.polygon, region]));
     empty.hidden = app.features.length > 0;
+    empty.textContent = app.session ? 'No polygon is in this mesh yet: draw one, or take a GeoJSON file.' : 'No terrain is shown.';
     list.replaceChildren(...app.features.map((feature) => {
       const {id} = feature.tinsmith;
       const region = areas.get(id);
@@ -46,7 +47,7 @@ export function buildRegions(app: App, edit: RegionEdit, view: View): HTMLElemen
       ['Plan area', areaText(region.plan_area, unit)], ['Surface area', areaText(region.surface_area, unit)],
       ['Triangles', number(region.triangles.length)], ['Within', region.within.join(', ') || 'none']]),
       h('div', {class: 'buttons'}, button('Show', () => { show(app, view, region.triangles); }, {class: 'small'}),
-        button('Take out', () => { void app.attempt(() => edit.takeOut()); }, {class: 'small danger', title: 'As if it had never been there'})));
+        button('Take out', () => { void app.attempt(() => edit.takeOut()); }, {class: 'small danger', title: 'As if it had never been there', disabled: app.isReadOnly})));
   });
   return h('div', {}, empty, list, chosen);
 }
@@ -67,9 +68,10 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
   const {wish} = edit;
   const rows: [HTMLElement, () => boolean][] = [];
   const row = (element: HTMLElement, when: () => boolean) => { rows.push([element, when]); return element; };
-  const text = (name: keyof Wish, attributes = {}) => input(wish[name], (value) => { (wish as any)[name] = value; }, attributes);
+  const text = (name: keyof Wish, attributes = {}) => input(wish[name], (value) => { (wish as any)[name] = value; edit.change(); }, attributes);
   const lifts = () => wish.operation === 'set' || wish.operation === 'offset';
   const level = text('elevation', {id: 'level'});
+  const through = text('point', {placeholder: 'x, y, z', inputmode: 'text'});
   const width = field('Width', text('width'));
   const form = h('div', {class: 'fields'},
     field('Do', select([['set', 'set the ground'], ['offset', 'raise or lower'], ['smooth', 'smooth'], ['remove', 'cut a hole'], ['keep', 'keep only the inside']],
@@ -77,19 +79,21 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     row(field('To', select([['elevation', 'a level'], ['plane', 'a plane of three points'], ['slope', 'a slope']], wish.shape,
       (value) => { wish.shape = value as Wish['shape']; update(); })), () => wish.operation === 'set'),
     row(field('Level', level, 'elevation'), () => wish.operation === 'set' && wish.shape === 'elevation'),
-    row(field('Points', h('textarea', {rows: 3, placeholder: 'x, y, z\nx, y, z\nx, y, z', oninput: (event: Event) => { wish.plane = (event.target as HTMLTextAreaElement).value; }})),
+    row(field('Points', h('textarea', {rows: 3, placeholder: 'x, y, z\nx, y, z\nx, y, z', oninput: (event: Event) => { wish.plane = (event.target as HTMLTextAreaElement).value; edit.change(); }})),
       () => wish.operation === 'set' && wish.shape === 'plane'),
     row(field('Slope', text('slope'), 'rise over run'), () => wish.operation === 'set' && wish.shape === 'slope'),
     row(field('Azimuth', text('azimuth'), 'the way up, ° from north'), () => wish.operation === 'set' && wish.shape === 'slope'),
-    row(field('Through', text('point', {placeholder: 'x, y, z', inputmode: 'text'})), () => wish.operation === 'set' && wish.shape === 'slope'),
+    row(field('Through', through), () => wish.operation === 'set' && wish.shape === 'slope'),
     row(field('By', text('by'), 'below 0 lowers'), () => wish.operation === 'offset'),
     row(field('Passes', text('passes')), () => wish.operation === 'smooth'),
     row(field('Border', select([['old', 'stays; a rim inside climbs'], ['new', 'moves too'], ['taper', 'tapers outside']], wish.border,
       (value) => { wish.border = value as Wish['border']; update(); })), lifts),
+    row(field('Border', select([['old', 'stays'], ['new', 'is smoothed too']], wish.edge, (value) => { wish.edge = value as Wish['edge']; edit.change(); })),
+      () => wish.operation === 'smooth'),
     row(width, () => lifts() && wish.border !== 'new'));
   const update = () => {
     for (const [element, when] of rows) element.hidden = !when();
-    edit.forget();
+    edit.change();
   };
   const box = h('div');
   let shown = '';
@@ -100,15 +104,19 @@ function buildForm(app: App, edit: RegionEdit): HTMLElement {
     if (!region || name === shown) { shown = name; return; }
     shown = name;
     // The mean of the corners is where the ground is; a level near it is what people try first.
-    let sum = 0;
-    for (const t of region.triangles) for (let k = 0; k < 3; ++k) sum += app.mesh.positions[3 * app.mesh.corners[3 * t + k] + 2];
-    wish.elevation = level.value = (sum / Math.max(1, 3 * region.triangles.length)).toFixed(1);
+    const sum = [0, 0, 0];
+    for (const t of region.triangles) for (let k = 0; k < 9; ++k) sum[k % 3] += app.mesh.positions[3 * app.mesh.corners[3 * t + Math.floor(k / 3)] + (k % 3)];
+    const mean = sum.map((all) => (all / Math.max(1, 3 * region.triangles.length)).toFixed(1));
+    wish.elevation = level.value = mean[2];
+    wish.point = through.value = mean.join(', ');
   });
   const apply = () => { void app.attempt(() => edit.apply(), apply); };
+  const doIt = button('Apply', apply, {class: 'main', id: 'edit-apply'});
+  app.on(['progress', 'session'], () => { doIt.disabled = app.editing || app.isReadOnly; });
   app.on(['edit'], () => { box.replaceChildren(...buildEditReport(app, edit)); });
   update();
   return h('div', {}, h('h2', {}, 'Edit the ground inside'), form, h('div', {class: 'buttons go'},
-    button('Dry run', () => { void app.attempt(() => edit.dryRun()); }, {id: 'edit-dry'}), button('Apply', apply, {class: 'main', id: 'edit-apply'})), box);
+    button('Dry run', () => { void app.attempt(() => edit.dryRun()); }, {id: 'edit-dry'}), doIt), box);
 }
 
 function buildEditReport(app: App, edit: RegionEdit): HTMLElement[] {
@@ -142,7 +150,8 @@ function buildVolume(app: App, edit: RegionEdit): HTMLElement {
   });
   return h('details', {}, h('summary', {}, 'Measure cut and fill'),
     h('div', {class: 'inline'}, level, button('Against the level', () => {
-      void app.attempt(() => edit.askVolume({elevation: Number(level.value)}, `against ${level.value}`));
+      // Of an empty field there is no number: the server says so.
+      void app.attempt(() => edit.askVolume({elevation: level.value.trim() === '' ? null : Number(level.value)}, `against ${level.value}`));
     }, {class: 'small'})),
     h('div', {class: 'inline'}, version, button('Against the version', () => {
       void app.attempt(() => edit.askVolume({version: Number(version.value)}, `against version ${version.value}`));

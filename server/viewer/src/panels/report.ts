@@ -3,7 +3,7 @@
 import type {Report} from '../api';
 import type {App} from '../app';
 import type {Draft} from '../draft';
-import {type AngleChange, type Angles, BAR_DEGREES} from '../angles';
+import {type AngleChange, type Angles, anglesOf, BAR_DEGREES} from '../angles';
 import {brief, bytesText, figures, h, number, shortUnit, svg} from '../ui';
 
 const most = (report: Report, name: 'max_vertical_deviation' | 'max_plan_deviation' | 'max_elevation_change') =>
@@ -21,12 +21,12 @@ const [WIDTH, HEIGHT, BOTTOM] = [320, 112, 18];
 
 const told = (when: string, {count, least}: Angles) => `${when}: ${number(count)}${count ? `, least ${brief(least)}°` : ''}`;
 
-/** Smallest angles of the triangles that changed: as they were, and as they are, bar beside bar. */
-function histogram({before, after}: AngleChange): HTMLElement {
+/** Smallest angles of the triangles that change: as they were, and as they are or would be, bar beside bar. */
+function histogram({before, after}: AngleChange, isDone: boolean): HTMLElement {
   const most = Math.max(1, ...before.bars, ...after.bars);
   const wide = WIDTH / before.bars.length;
   const out = svg('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img',
-    'aria-label': `Smallest angles in steps of ${BAR_DEGREES} degrees. Before: ${before.bars.join(', ')}. After: ${after.bars.join(', ')}.`});
+    'aria-label': `Smallest angles in steps of ${BAR_DEGREES} degrees. Before: ${before.bars.join(', ')}. ${isDone ? 'After' : 'They would be'}: ${after.bars.join(', ')}.`});
   const bar = (name: string, i: number, count: number, shift: number) => {
     const high = count ? Math.max(1.5, (count / most) * (HEIGHT - BOTTOM - 14)) : 0;
     const what = svg('rect', {class: name, x: i * wide + shift, y: HEIGHT - BOTTOM - high, width: wide * 0.4, height: high});
@@ -40,7 +40,7 @@ function histogram({before, after}: AngleChange): HTMLElement {
   out.append(svg('line', {class: 'axis', x1: 0, x2: WIDTH, y1: HEIGHT - BOTTOM, y2: HEIGHT - BOTTOM}), svg('text', {x: WIDTH, y: HEIGHT - 5, 'text-anchor': 'end'}, '60°'));
   return h('figure', {class: 'plot angles'}, h('figcaption', {}, h('b', {}, 'Smallest angles of the triangles touched'),
     h('span', {class: 'soft'}, h('i', {class: 'box was'}), told('before', before)),
-    h('span', {class: 'soft'}, h('i', {class: 'box is'}), told('after', after))), out as unknown as HTMLElement);
+    h('span', {class: 'soft'}, h('i', {class: 'box is'}), told(isDone ? 'after' : 'would be', after))), out as unknown as HTMLElement);
 }
 
 export function buildReport(app: App, draft: Draft): HTMLElement {
@@ -71,7 +71,8 @@ export function buildReport(app: App, draft: Draft): HTMLElement {
       row('Parts outside', (r) => number(r.polygons.reduce((all, p) => all + p.outside.length, 0))),
       row('Server, ms', (r) => number(milliseconds(r), 2)),
     ]));
-    if (measured?.angles?.after.count) box.append(histogram(measured.angles));
+    const angles = measured ? measured.angles : promised && anglesOf(promised);
+    if (angles?.after.count) box.append(histogram(angles, measured !== null));
   });
   return box;
 }

@@ -97,6 +97,12 @@ TEST_F(CrsRoutes, ElevationsAreAskedInDegreesAndAnsweredInMetres) {
     const json many = good(post(session + "/elevation?crs=OGC:CRS84",
                                 R"({"points": [[-84.122937739426,36.345370307933],[-84,36]]})"));
     EXPECT_NEAR(many["points"][0]["elevation"], 200, 0.001) << many;
+    EXPECT_NEAR(many["points"][0]["x"], one["x"], 0.001);
+    EXPECT_NEAR(many["points"][0]["y"], one["y"], 0.001);
+    EXPECT_EQ(many["points"][1]["reason"], "outside-mesh");
+    EXPECT_GT(many["points"][1]["x"], 760000) << "off the mesh, and told where all the same";
+    const json own = good(post(session + "/elevation", R"({"points": [[758200,4026500]]})"));
+    EXPECT_FALSE(own["points"][0].contains("x")) << "nothing was brought over";
     const Response swapped =
         ask("GET", session + "/elevation?y=-84.122937739426&x=36.345370307933&crs=EPSG:4326");
     EXPECT_EQ(swapped.status, 400);

@@ -182,6 +182,38 @@ TEST_F(PolygonRoutes, ImproveAsFarAsAllowed) {
     EXPECT_LE(report["polygons"][0]["max_vertical_deviation"], 0.125);
 }
 
+TEST_F(PolygonRoutes, CountAnglesWhereTheyAreAskedFor) {
+    const json dry = report_of("?angles=true&dry_run=true", kParcel);
+    EXPECT_FALSE(report_of("?dry_run=true", kParcel).contains("smallest_angles"));
+    const auto triangles = [&] {
+        return json::parse(ask("GET", session).body)["triangles"].get<std::int64_t>();
+    };
+    const auto sum = [](const json& steps) {
+        std::int64_t all = 0;
+        for (const json& count : steps)
+            all += count.get<std::int64_t>();
+        return all;
+    };
+    const std::int64_t before = triangles();
+    const json done = report_of("?angles=true", kParcel);
+    EXPECT_EQ(done["smallest_angles"], dry["smallest_angles"]) << "what was promised is there";
+    EXPECT_GT(sum(dry["smallest_angles"]["before"]), 0);
+    EXPECT_EQ(sum(dry["smallest_angles"]["after"]) - sum(dry["smallest_angles"]["before"]),
+              triangles() - before);
+    EXPECT_FALSE(json::parse(ask("GET", session + "/history/2").body).contains("smallest_angles"));
+}
+
+TEST_F(PolygonRoutes, CountNoAnglesBesideAMesh) {
+    for (const char* type :
+         {"model/gltf-binary", "model/gltf+json", "application/vnd.tinsmith.delta"}) {
+        const Response refused =
+            post(session + "/polygons?angles=true", kParcel, {{"accept", type}});
+        EXPECT_EQ(refused.status, 400) << type;
+        EXPECT_EQ(told(refused), "invalid-parameter") << type;
+    }
+    EXPECT_EQ(version_of(session), 1);
+}
+
 TEST_F(PolygonRoutes, LockAndWindAsAsked) {
     const json report = report_of("?lock=true&winding=nonzero", kParcel);
     EXPECT_EQ(report["totals"]["segments"], 4);
