@@ -14,8 +14,8 @@ namespace tinsmith::server {
 ///
 /// Each line has "time" (RFC 3339, with milliseconds), "level" ("debug", "info", "warning",
 /// "error") and "event", a word that stays the same from release to release: alerts may rest on it.
-/// Those there are: request, listening, started, exposed, job_ended, not_ready, ready_again,
-/// draining, stopping, stopped, stop_forced, failed, defect.
+/// Those there are: request, listening, started, exposed, keys, keys_refused, first_key, job_ended,
+/// not_ready, ready_again, draining, stopping, stopped, stop_forced, failed, defect.
 enum class LogLevel { Debug, Info, Warning, Error, Off };
 
 /// Auto: text where standard error is a terminal, because a person reads it; else JSON, because
@@ -31,9 +31,9 @@ void log_event(LogLevel level, std::string_view event, std::string_view message,
                std::initializer_list<LogField> fields = {});
 
 /// One line: method, path, route, status, bytes both ways, milliseconds, request id, client, the
-/// word of the problem where it was refused, and the trace where it belongs to one. What failed in
-/// the server is an error, what it had no room or time for a warning; what monitors ask for all day
-/// is told at level debug.
+/// name of the API key (never the key), the word of the problem where it was refused, and the trace
+/// where it belongs to one. What failed in the server is an error, what it had no room or time for
+/// a warning; what monitors ask for all day is told at level debug.
 void log_request(const Request& request, const Response& response, double milliseconds);
 
 /// Bytes of the body as it goes out: none to HEAD.

@@ -30,6 +30,7 @@ class SessionIsDamaged : public std::runtime_error {
 /// A session as the vault knows it without loading it.
 struct VaultEntry {
     SessionFacts facts;
+    std::string owner;  ///< id of the key that made it; empty: none did
     SessionCounts counts;
     std::int64_t used = 0;  ///< Unix seconds
     RequestKey made_by;     ///< of the request that made it
@@ -73,9 +74,9 @@ class SessionVault {
     std::vector<VaultEntry> entries() const;
 
     /// Stores a new session and has it log its changes here from then on, with the key of the
-    /// request that this thread works on. Requires: nobody else has the session yet. Throws
-    /// StorageFault.
-    void create(Session& session);
+    /// request that this thread works on. `owner`: the id of the API key that makes it, or empty.
+    /// Requires: nobody else has the session yet. Throws StorageFault.
+    void create(Session& session, const std::string& owner = {});
     /// Throws SessionIsDamaged, SessionIsGone, StorageFault. Cost: the snapshot, and what its
     /// changes since took.
     LoadedSession load(const std::string& birth);

@@ -8,21 +8,27 @@
 
 namespace tinsmith::server {
 
-StopSignals::StopSignals() {
+StopSignals::StopSignals(bool hangup) {
     sigemptyset(&set_);
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
+    if (hangup) sigaddset(&set_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
     // A file that may not grow (ulimit -f) is an error of the write, as a full disk is.
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void StopSignals::wait() const {
-    int signal = 0;
-    sigwait(&set_, &signal);
+void StopSignals::wait(const std::function<void()>& on_hangup) const {
+    for (;;) {
+        int signal = 0;
+        sigwait(&set_, &signal);
+        if (signal != SIGHUP) return;
+        if (on_hangup) on_hangup();
+    }
 }
 
 void StopSignals::release() const {
+    if (sigismember(&set_, SIGHUP) == 1) std::signal(SIGHUP, SIG_IGN);  // nothing to read for
     pthread_sigmask(SIG_UNBLOCK, &set_, nullptr);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +46,8 @@ class Handlers : public ::testing::Test {
         request.body = body;
         request.id = "test";
         request.trace = parse_traceparent(request.header("traceparent").value_or(""));
-        Response response = router.handle(request);
+        auto refusal = admit ? admit(request) : std::nullopt;
+        Response response = refusal ? *std::move(refusal) : router.handle(request);
         finish_answer(services.policy, request, response);
         EXPECT_EQ(Description::get().complaint(request, response), "")
             << method << " " << target << " is answered as /openapi.json does not say";
@@ -86,6 +89,8 @@ class Handlers : public ::testing::Test {
         return json::parse(ask("GET", session).body)["version"].get<int>();
     }
 
+    /// What stands in front of the routes, if anything does.
+    std::function<std::optional<Response>(Request&)> admit;
     Services services{few_sessions()};
     Router router{make_routes(services)};
 };

@@ -43,6 +43,7 @@ class Life {
         if (!body.empty()) request.headers.emplace_back("content-type", "application/json");
         request.body = body;
         request.id = "test";
+        request.asker = asker;
         Response response = router_->handle(request);
         finish_answer(services_.policy, request, response);
         EXPECT_EQ(Description::get().complaint(request, response), "") << method << " " << target;
@@ -68,6 +69,8 @@ class Life {
             if (key == name) return value;
         return {};
     }
+
+    Asker asker;  ///< of what is asked from now on
 
     Services& services() { return services_; }
     SessionKeeper& keeper() { return *keeper_; }
@@ -213,7 +216,7 @@ TEST_F(StoredSessions, LeaveMemoryForOthersAndComeBack) {
     for (const json& session : list)
         EXPECT_EQ(session["version"], 3) << "loaded or not";
     // What somebody holds stays.
-    const auto held = life().services().sessions.find("s0");
+    const auto held = life().services().sessions.find("s0", {});
     for (int i = 1; i < 12; ++i)
         life().get("s" + std::to_string(i));
     EXPECT_TRUE(life().services().sessions.is_kept(*held));
@@ -230,8 +233,8 @@ TEST_F(StoredSessions, EndWhereNobodyAsksForThem) {
     const auto now = system_clock::to_time_t(system_clock::now());
     EXPECT_TRUE(life().services().sessions.remove_unused_since(now - 3600).empty());
     // What came of questions is not stored: a start counts as one.
-    life().services().vault->journal().touch(life().services().sessions.find("a")->facts().birth,
-                                             1000);
+    life().services().vault->journal().touch(
+        life().services().sessions.find("a", {})->facts().birth, 1000);
     restart();
     EXPECT_TRUE(life().services().sessions.remove_unused_since(now - 3600).empty());
     EXPECT_GT(life().view("a")["expires"], "2026");
@@ -248,7 +251,7 @@ TEST_F(StoredSessions, AreStoredAnewWhenTheirTailIsLong) {
         life().ask("POST", "/v1/sessions/a/" + std::string(i % 2 == 0 ? "undo" : "redo"));
     for (int i = 0; i < 12; ++i)
         ASSERT_EQ(life().cut("a", 1 + i % 4 * 2).status, 200);
-    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const std::string birth = life().services().sessions.find("a", {})->facts().birth;
     const auto until = steady_clock::now() + std::chrono::seconds(20);
     std::uint64_t stored = 1;
     while (stored == 1 && steady_clock::now() < until) {
@@ -264,7 +267,7 @@ TEST_F(StoredSessions, AreStoredAnewWhenTheirTailIsLong) {
 TEST_F(StoredSessions, ThatAreDamagedAreOutOfServiceAlone) {
     life().make("a");
     life().make("b");
-    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const std::string birth = life().services().sessions.find("a", {})->facts().birth;
     // A change that nobody made: its digest is not what doing it gives.
     const auto fault = life().services().vault->journal().append({birth,
                                                                   2,
@@ -289,12 +292,55 @@ TEST_F(StoredSessions, ThatAreDamagedAreOutOfServiceAlone) {
     EXPECT_EQ(life().make("a").status, 201);
 }
 
+TEST_F(StoredSessions, BelongToTheirKeysInTheNextLifeToo) {
+    const Asker alice{"a1", "alice", {}}, bob{"b2", "bob", {}};
+    const auto as = [this](const Asker& asker) -> Life& {
+        life().asker = asker;
+        return life();
+    };
+    as({}).make("old");
+    const std::vector<NameValue> key{{"idempotency-key", "k"}};
+    as(alice).make("hers");
+    EXPECT_EQ(as(alice).cut("hers", 2, key).status, 200);
+    const Response made = as(alice).ask("POST", "/v1/sessions", key, kSquare);
+    const std::string fork =
+        Life::header_of(as(bob).ask("POST", "/v1/sessions/old/fork"), "Location");
+    const auto check = [&] {
+        const auto listed = [&](const Asker& asker) {
+            return json::parse(as(asker).ask("GET", "/v1/sessions").body)["sessions"].size();
+        };
+        EXPECT_EQ(listed(alice), 3U);
+        EXPECT_EQ(listed(bob), 2U);
+        EXPECT_EQ(listed({}), 4U) << "where no keys are used, all is everyone's";
+        EXPECT_EQ(as(bob).ask("GET", "/v1/sessions/hers").status, 404);
+        EXPECT_EQ(as(bob).ask("DELETE", "/v1/sessions/hers").status, 404);
+        EXPECT_EQ(as(bob).cut("hers", 2, key).status, 404);
+        EXPECT_EQ(as(bob).make("hers").status, 409);
+        EXPECT_EQ(as(alice).ask("GET", fork).status, 404);
+        EXPECT_EQ(as(bob).ask("GET", fork).status, 200);
+        EXPECT_EQ(Life::header_of(as(alice).cut("hers", 2, key), "Idempotency-Replayed"), "true");
+        const Response again = as(alice).ask("POST", "/v1/sessions", key, kSquare);
+        EXPECT_EQ(Life::header_of(again, "Idempotency-Replayed"), "true");
+        EXPECT_EQ(Life::header_of(again, "Location"), Life::header_of(made, "Location"));
+        EXPECT_EQ(as(bob).ask("GET", "/v1/sessions/old").status, 200);
+    };
+    check();
+    restart();
+    check();
+    life().keeper().snapshot_all(steady_clock::time_point::max());
+    restart();
+    check();
+    const Response another = as(bob).ask("POST", "/v1/sessions", key, kSquare);
+    EXPECT_EQ(Life::header_of(another, "Idempotency-Replayed"), "") << "his key is not hers";
+    EXPECT_NE(Life::header_of(another, "Location"), Life::header_of(made, "Location"));
+}
+
 TEST_F(StoredSessions, OfAnotherAlgorithmAreReadOnly) {
     life().make("a");
     life().cut("a", 2);
     const std::string mesh = life().get("a/mesh.json");
     life().keeper().snapshot_all(steady_clock::time_point::max());
-    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const std::string birth = life().services().sessions.find("a", {})->facts().birth;
     ASSERT_FALSE(life().services().vault->journal().append({birth,
                                                             3,
                                                             core::kAlgorithm + 1,
