@@ -167,7 +167,7 @@ TEST_F(KeyFolder, IsWrittenForItsOwnerAlone) {
     EXPECT_EQ(count(path()), 1U);
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
-        files += entry.path() != path() && entry.path() != path() + ".lock" ? 1 : 0;
+        if (entry.path() != path() && entry.path() != path() + ".lock") ++files;
     EXPECT_EQ(files, 0U) << "nothing is left lying about";
 }
 

@@ -83,7 +83,9 @@ TEST_F(KeyRoutes, AreWantedByEveryRouteUnderV1) {
         EXPECT_EQ(answers.size(), 1U) << "unknown and malformed keys are refused in one way";
         EXPECT_EQ(ask(route.method, target, {bearer(alice), bearer(bob)}).status, 401);
         EXPECT_EQ(ask("OPTIONS", target).status, 200) << "browsers ask before they may show a key";
-        if (route.method == "GET") EXPECT_EQ(ask("HEAD", target).status, 401);
+        if (route.method == "GET") {
+            EXPECT_EQ(ask("HEAD", target).status, 401);
+        }
     }
     EXPECT_GT(kept, 30U);
     EXPECT_GE(open, 6U);
@@ -131,8 +133,9 @@ TEST_F(KeyRoutes, MakeSessionsThatAreThereForNobodyElse) {
                 const std::string title = route.method + " " + route.pattern;
                 if (title == "PUT /v1/sessions/{id}") continue;  // below
                 const Response foreign = asked("hers"), none = asked("nobodys");
-                EXPECT_EQ(foreign.status, 404) << title;
                 EXPECT_EQ(foreign.status, none.status) << title;
+                // A DELETE that has a body is refused for that, whatever it names.
+                EXPECT_EQ(foreign.status, !body.empty() && none.status == 400 ? 400 : 404) << title;
                 EXPECT_EQ(foreign.body, none.body) << title;
                 EXPECT_EQ(foreign.headers, none.headers) << title;
             }
@@ -159,7 +162,8 @@ TEST_F(KeyRoutes, ListWhatIsTheirsAndWhatIsNobodys) {
     ASSERT_EQ(services.sessions.fork(*services.sessions.find("his", {}), {}).index(), 0U);
     const auto ids = [this](const std::string& key) {
         std::set<std::string> found;
-        for (const auto& session : json::parse(as(key, "GET", "/v1/sessions").body)["sessions"])
+        const json list = json::parse(as(key, "GET", "/v1/sessions").body);
+        for (const auto& session : list["sessions"])
             found.insert(session["id"]);
         return found;
     };
@@ -187,8 +191,9 @@ TEST_F(KeyRoutes, CompareNoSurfacesWithThoseOfOthers) {
 }
 
 TEST_F(KeyRoutes, ForkToTheForker) {
-    const std::string shared =
-        std::get<0>(services.sessions.add(core::Tin{}, {}, {}, "shared"))->facts().id;
+    make(alice, "hers");
+    const auto hers = services.sessions.find("hers", {});
+    const std::string shared = std::get<0>(services.sessions.fork(*hers, {}))->facts().id;
     const Response forked = as(bob, "POST", "/v1/sessions/" + shared + "/fork");
     ASSERT_EQ(forked.status, 201) << forked.body;
     EXPECT_EQ(as(bob, "GET", header(forked, "Location")).status, 200);
@@ -246,7 +251,8 @@ TEST_F(KeyRoutes, ReplayNoAnswersOfOthers) {
             .index(),
         0U);
     std::string shared;
-    for (const auto& session : json::parse(as(bob, "GET", "/v1/sessions").body)["sessions"])
+    const json list = json::parse(as(bob, "GET", "/v1/sessions").body);
+    for (const auto& session : list["sessions"])
         if ("/v1/sessions/" + session["id"].get<std::string>() != header(his, "Location"))
             shared = "/v1/sessions/" + session["id"].get<std::string>() + "/polygons";
     EXPECT_EQ(as(alice, "POST", shared, kParcel, key).status, 200);
@@ -295,13 +301,13 @@ TEST_F(KeyRoutes, AreToldTheirOwnLimits) {
                               "max_requests_per_second": 2.5})"));
     EXPECT_EQ(json::parse(as(alice, "GET", "/v1/limits").body)["key"],
               json::parse(R"({"name": "alice", "id": "01"})"));
-    const json& described = json::parse(
+    const json described = json::parse(
         api::openapi_document())["components"]["schemas"]["Limits"]["properties"]["key"];
     std::set<std::string> names;
     for (const auto& [name, schema] : described["properties"].items())
         names.insert(name);
-    for (const auto& [name, value] :
-         json::parse(as(carol, "GET", "/v1/limits").body)["key"].items())
+    const json told = json::parse(as(carol, "GET", "/v1/limits").body)["key"];
+    for (const auto& [name, value] : told.items())
         EXPECT_EQ(names.erase(name), 1U) << name;
     EXPECT_TRUE(names.empty());
 }
