@@ -46,8 +46,8 @@ constexpr const char* kServeFooter =
     "  TINSMITH_MAX_SESSIONS=8 tinsmith serve";
 
 constexpr const char* kIntegrateFooter =
-    "TERRAIN is a GeoTIFF of elevations, a JSON mesh, points or grid, or CSV lines x,y,z;\n"
-    "POLYGONS is GeoJSON in the terrain's coordinates.\n\n"
+    "TERRAIN is GeoTIFF, ESRI ASCII grid, GLB, OBJ, LandXML, CSV lines x,y,z, or JSON (mesh,\n"
+    "points or grid); POLYGONS is GeoJSON in the terrain's coordinates.\n\n"
     "Examples:\n"
     "  tinsmith integrate terrain.tif lake.geojson -o out.glb --report report.json\n"
     "  tinsmith integrate mesh.json road.geojson -o out.glb --elevation own --snap 0.05";
@@ -181,7 +181,7 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     add_setting(*serve, "host", http.host, "Address to listen on");
     add_setting(*serve, "port", http.port, "Port to listen on; 0: any free one")
         ->check(CLI::Range(0, 65535));
-    add_setting(*serve, "port_file", config.port_file, "Write the port here once it is open");
+    add_setting(*serve, "port_file", config.port_file, "Write the port here once it is ready");
     serve->add_flag("--demo", config.demo, "Load the bundled terrain as session \"demo\"")
         ->envname("TINSMITH_DEMO");
     add_setting(*serve, "demo_terrain", config.demo_terrain, "Load this terrain for --demo");
@@ -247,7 +247,7 @@ CLI::App* add_integrate(CLI::App& app, IntegrateConfig& config) {
     CLI::App* integrate =
         app.add_subcommand("integrate", "Cut polygons into a terrain and write it as GLB");
     integrate->footer(kIntegrateFooter);
-    integrate->add_option("TERRAIN", config.terrain, "GeoTIFF, glTF, OBJ, LandXML or JSON")
+    integrate->add_option("TERRAIN", config.terrain, "A file, of one of the formats below")
         ->required();
     integrate->add_option("POLYGONS", config.polygons, "GeoJSON")->required();
     integrate->add_option("-o,--output", config.output, "The mesh as GLB")->required();

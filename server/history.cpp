@@ -2,6 +2,7 @@
 #include "server/history.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace tinsmith::server {
@@ -12,6 +13,13 @@ template <typename T>
 void make_room(std::vector<T>& list, std::size_t more) {
     const std::size_t needed = list.size() + more;
     if (needed > list.capacity()) list.reserve(std::max(needed, list.capacity() * 2));
+}
+
+std::size_t undoable_bytes(const Edit& edit) {
+    return sizeof edit + edit.removed_bytes;
+}
+std::size_t redoable_bytes(const Edit& edit) {
+    return sizeof edit + edit.added_bytes;
 }
 
 /// The part of all bytes that what changes tell of themselves may take.
@@ -89,13 +97,6 @@ std::vector<Polygon> History::polygons() const {
     return list;
 }
 
-std::size_t History::polygon_count() const {
-    std::size_t count = settled_polygons_;
-    for (const AppliedPtr& applied : applied_)
-        count += polygon_ids(*applied->operation).size();
-    return count;
-}
-
 void History::prepare(std::size_t added) {
     make_room(changes_, 1);
     make_room(settled_, added + applied_.size());
@@ -105,29 +106,53 @@ void History::prepare(std::size_t added) {
 }
 
 std::size_t History::memory_bytes() const {
-    std::size_t sum = settled_bytes_ + told_bytes_;
-    for (const AppliedPtr& applied : applied_)
-        sum += applied->lasting_bytes + applied->record_bytes;
+    return settled_bytes_ + told_bytes_ + sums_.applied_bytes + sums_.undoable_bytes +
+           sums_.redoable_bytes + sums_.lone_bytes;
+}
+
+History::Sums History::counted() const {
+    Sums sums;
+    for (const AppliedPtr& applied : applied_) {
+        if (!applied || !applied->operation) continue;  // of bytes that nobody wrote
+        sums.polygons += polygon_ids(*applied->operation).size();
+        sums.applied_bytes += applied->lasting_bytes + applied->record_bytes;
+    }
     for (const Edit& edit : undoable_)
-        sum += sizeof edit + edit.removed_bytes;
+        sums.undoable_bytes += undoable_bytes(edit);
     for (const Edit& edit : redoable_)
-        sum += sizeof edit + edit.added_bytes;
+        sums.redoable_bytes += redoable_bytes(edit);
     for (const Change& change : changes_)
-        sum += change.lone_bytes;
-    return sum;
+        sums.lone_bytes += change.lone_bytes;
+    return sums;
+}
+
+/// Requires: room for it.
+void History::add_applied(AppliedPtr applied) noexcept {
+    sums_.polygons += polygon_ids(*applied->operation).size();
+    sums_.applied_bytes += applied->lasting_bytes + applied->record_bytes;
+    applied_.push_back(std::move(applied));
+}
+
+void History::count_out(const Applied& applied) noexcept {
+    sums_.polygons -= polygon_ids(*applied.operation).size();
+    sums_.applied_bytes -= applied.lasting_bytes + applied.record_bytes;
 }
 
 void History::make(Edit edit, std::vector<AppliedPtr> done, Change change) noexcept {
     for (const Edit& dropped : redoable_)
         leave_to_steps(dropped.version, dropped.added_bytes);
     redoable_.clear();
+    sums_.redoable_bytes = 0;
     replace(edit.first, done);
+    sums_.undoable_bytes += undoable_bytes(edit);
     undoable_.push_back(std::move(edit));
     keep(std::move(change));
 }
 
 void History::undo(std::vector<AppliedPtr> done, Change change) noexcept {
     replace(undoable_.back().first, done);
+    sums_.undoable_bytes -= undoable_bytes(undoable_.back());
+    sums_.redoable_bytes += redoable_bytes(undoable_.back());
     redoable_.push_back(std::move(undoable_.back()));
     undoable_.pop_back();
     keep(std::move(change));
@@ -135,22 +160,28 @@ void History::undo(std::vector<AppliedPtr> done, Change change) noexcept {
 
 void History::redo(std::vector<AppliedPtr> done, Change change) noexcept {
     replace(redoable_.back().first, done);
+    sums_.redoable_bytes -= redoable_bytes(redoable_.back());
+    sums_.undoable_bytes += undoable_bytes(redoable_.back());
     undoable_.push_back(std::move(redoable_.back()));
     redoable_.pop_back();
     keep(std::move(change));
 }
 
 void History::replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept {
+    for (std::size_t i = first - base(); i < applied_.size(); ++i)
+        count_out(*applied_[i]);
     applied_.resize(first - base());
     for (AppliedPtr& applied : by)
-        applied_.push_back(std::move(applied));
+        add_applied(std::move(applied));
 }
 
 void History::keep(Change change) noexcept {
     change.told_bytes = told_bytes_of(change);
     told_bytes_ += change.told_bytes;
+    sums_.lone_bytes += change.lone_bytes;
     changes_.push_back(std::move(change));
     shrink();
+    assert(sums_ == counted());
 }
 
 void History::settle_oldest() noexcept {
@@ -162,12 +193,15 @@ void History::settle_oldest() noexcept {
     } else {
         settled_.push_back({});  // its place alone counts
     }
+    count_out(*oldest);
     applied_.erase(applied_.begin());
     // Undo goes from the newest on: what is older than one that is out of reach is so too.
     const auto last = std::find_if(undoable_.rbegin(), undoable_.rend(),
                                    [this](const Edit& edit) { return edit.first < base(); });
-    for (auto edit = undoable_.begin(); edit != last.base(); ++edit)
+    for (auto edit = undoable_.begin(); edit != last.base(); ++edit) {
         leave_to_steps(edit->version, edit->removed_bytes);
+        sums_.undoable_bytes -= undoable_bytes(*edit);
+    }
     undoable_.erase(undoable_.begin(), last.base());
     forget_unreachable();
 }
@@ -176,12 +210,14 @@ void History::settle() {
     make_room(settled_, applied_.size());
     redoable_.clear();
     undoable_.clear();
+    sums_ = counted();
     while (!applied_.empty())
         settle_oldest();
     changes_.erase(changes_.begin(), changes_.end() - 1);
     changes_.back().step.reset();
     changes_.back().written.clear();
     changes_.back().lone_bytes = 0;
+    sums_ = counted();
     told_bytes_ = changes_.back().told_bytes = told_bytes_of(changes_.back());
 }
 
@@ -190,19 +226,24 @@ void History::forget_unreachable() noexcept {
     const auto newest = std::find_if(
         changes_.rbegin(), changes_.rend(),
         [this](const Change& change) { return change.step && change.step->first < base(); });
-    for (auto change = changes_.begin(); change != newest.base(); ++change) {
-        change->step.reset();
-        change->lone_bytes = 0;
-    }
+    for (auto change = changes_.begin(); change != newest.base(); ++change)
+        forget_step(*change);
+}
+
+void History::forget_step(Change& change) noexcept {
+    change.step.reset();
+    sums_.lone_bytes -= std::exchange(change.lone_bytes, 0);
 }
 
 void History::drop_oldest_change() noexcept {
     told_bytes_ -= changes_.front().told_bytes;
+    sums_.lone_bytes -= changes_.front().lone_bytes;
     changes_.erase(changes_.begin());
 }
 
 void History::drop_oldest_undoable() noexcept {
     leave_to_steps(undoable_.front().version, undoable_.front().removed_bytes);
+    sums_.undoable_bytes -= undoable_bytes(undoable_.front());
     undoable_.erase(undoable_.begin());
 }
 
@@ -213,7 +254,9 @@ void History::leave_to_steps(std::uint64_t version, std::size_t bytes) noexcept 
         std::find_if(changes_.rbegin(), changes_.rend(), [version](const Change& change) {
             return change.version == version || change.of == version;
         });
-    if (about != changes_.rend() && about->step) about->lone_bytes += bytes;
+    if (about == changes_.rend() || !about->step) return;
+    about->lone_bytes += bytes;
+    sums_.lone_bytes += bytes;
 }
 
 /// False: no step keeps anything alone. Versions before the ones forgotten are gone.
@@ -221,10 +264,8 @@ bool History::forget_oldest_lone() noexcept {
     const auto lone = std::find_if(changes_.begin(), changes_.end(),
                                    [](const Change& change) { return change.lone_bytes > 0; });
     if (lone == changes_.end()) return false;
-    for (auto change = changes_.begin(); change <= lone; ++change) {
-        change->step.reset();
-        change->lone_bytes = 0;
-    }
+    for (auto change = changes_.begin(); change <= lone; ++change)
+        forget_step(*change);
     return true;
 }
 

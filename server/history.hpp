@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -106,8 +107,8 @@ class History {
 
     /// All polygons that lie in the mesh, in the order in which they came.
     std::vector<Polygon> polygons() const;
-    std::size_t polygon_count() const;
-    /// About what is held beside the mesh. Cost: linear in the edits that are kept.
+    std::size_t polygon_count() const { return settled_polygons_ + sums_.polygons; }
+    /// About what is held beside the mesh.
     std::size_t memory_bytes() const;
 
     /// Makes room, so that one change with so many new operations takes no memory.
@@ -134,9 +135,23 @@ class History {
     static void each(Either& history, Visit visit) {
         visit(history.changes_, history.settled_, history.told_bytes_, history.settled_bytes_,
               history.settled_polygons_, history.applied_, history.undoable_, history.redoable_);
+        if constexpr (!std::is_const_v<Either>) history.sums_ = history.counted();
     }
 
   private:
+    /// Of the lists below, kept as they change: each edit asks for them.
+    struct Sums {
+        std::size_t polygons = 0;  ///< of `applied_`
+        std::size_t applied_bytes = 0;
+        std::size_t undoable_bytes = 0;
+        std::size_t redoable_bytes = 0;
+        std::size_t lone_bytes = 0;  ///< of `changes_`
+
+        friend bool operator==(const Sums&, const Sums&) = default;
+    };
+    Sums counted() const;
+    void add_applied(AppliedPtr applied) noexcept;
+    void count_out(const Applied& applied) noexcept;
     void replace(std::size_t first, std::vector<AppliedPtr>& by) noexcept;
     void keep(Change change) noexcept;
     void settle_oldest() noexcept;
@@ -144,6 +159,7 @@ class History {
     void leave_to_steps(std::uint64_t version, std::size_t bytes) noexcept;
     bool forget_oldest_lone() noexcept;
     void forget_unreachable() noexcept;
+    void forget_step(Change& change) noexcept;
     void drop_oldest_change() noexcept;
     void shrink() noexcept;
 
@@ -156,6 +172,7 @@ class History {
     std::vector<AppliedPtr> applied_;
     std::vector<Edit> undoable_;
     std::vector<Edit> redoable_;  ///< the next one last
+    Sums sums_;
 };
 
 }  // namespace tinsmith::server

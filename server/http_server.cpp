@@ -85,6 +85,10 @@ Head head_of(const httplib::Request& raw) {
             head.fault = "The header " + key + " is the server's own: do not send it.";
         }
     }
+    if (raw.version == "HTTP/1.1" && !request.header("host")) {
+        head.ok = false;
+        head.fault = "Send a Host header.";
+    }
     const auto wished_id = request.header("x-request-id");
     request.id = wished_id && is_sane_id(*wished_id) ? std::string(*wished_id) : random_hex(8);
     request.trace = trace_of(request);

@@ -12,10 +12,9 @@ namespace tinsmith::server {
 /// The log goes to standard error, one line an event: a JSON object for programs, or a text for
 /// people. Clients' bytes are escaped before they get there, so that no request can forge a line.
 ///
-/// Each line has "time" (RFC 3339, with milliseconds), "level" ("debug", "info", "warning",
+/// Each object has "time" (RFC 3339, with milliseconds), "level" ("debug", "info", "warning",
 /// "error") and "event", a word that stays the same from release to release: alerts may rest on it.
-/// Those there are: request, listening, started, exposed, keys, keys_refused, first_key, job_ended,
-/// not_ready, ready_again, draining, stopping, stopped, stop_forced, failed, defect.
+/// docker/README.md lists them.
 enum class LogLevel { Debug, Info, Warning, Error, Off };
 
 /// Auto: text where standard error is a terminal, because a person reads it; else JSON, because

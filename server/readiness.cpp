@@ -22,8 +22,11 @@ std::optional<std::string> ask(const Readiness::Check& check) {
 
 void Readiness::enter(Phase phase) {
     Phase now = phase_;
-    while (now < phase && !phase_.compare_exchange_weak(now, phase)) {
-        // `now` is what another thread has entered meanwhile.
+    while (now < phase) {
+        // Where it fails, `now` is what another thread has entered meanwhile.
+        if (!phase_.compare_exchange_weak(now, phase)) continue;
+        if (phase == Phase::Serving) has_started_ = true;
+        return;
     }
 }
 

@@ -35,10 +35,15 @@ class Readiness {
     };
 
     /// There is a start to wait for. Before anybody asks.
-    void begin() { phase_ = Phase::Starting; }
+    void begin() {
+        phase_ = Phase::Starting;
+        has_started_ = false;
+    }
     /// Goes forward, or stays.
     void enter(Phase phase);
     Phase phase() const { return phase_; }
+    /// Whether all that was to be loaded has been: not where it was told to stop before that.
+    bool has_started() const { return has_started_; }
 
     /// `name` in small letters, for answers and the log. What the check uses must live until this
     /// ends.
@@ -55,6 +60,7 @@ class Readiness {
 
     /// Serving unless told otherwise: where nothing is loaded there is nothing to wait for.
     std::atomic<Phase> phase_{Phase::Serving};
+    std::atomic<bool> has_started_{true};
     mutable std::mutex mutex_;  ///< guards the list
     std::vector<std::shared_ptr<const Named>> checks_;
     mutable std::atomic<bool> fine_{true};  ///< as last told

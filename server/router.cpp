@@ -90,10 +90,10 @@ Response answer_safely(const Request& request, const std::function<Response()>& 
         return refuse(request, api::ProblemType::OutOfMemory,
                       "The server has no memory left for this; nothing was changed. Delete "
                       "sessions that are not needed, or send less.");
-    } catch (const StorageFault& fault) {
+    } catch (const StorageFault&) {
         return refuse(request, api::ProblemType::StorageUnavailable,
-                      "Nothing was changed: what was asked for cannot be stored. " +
-                          std::string(fault.what()) + " Ask again in a moment.")
+                      "Nothing was changed: what was asked for cannot be stored now. GET /readyz "
+                      "and the server's log say why. Ask again in a moment.")
             .with("Retry-After", "2");
     } catch (const SessionIsDamaged& damaged) {
         return refuse(request, api::ProblemType::SessionOutOfService,

@@ -60,13 +60,24 @@ struct SessionState {
     std::vector<AppliedPtr> held;  ///< what the polygons are views of; the session must live, too
 };
 
-/// All that a session is, copied out so that it can be stored while the session goes on.
+/// All that a session is, where it is.
+struct SessionParts {
+    const SessionFacts& facts;
+    const core::Tin& tin;
+    const History& history;
+    const std::uint64_t& next_polygon;
+    const std::string& digest;
+};
+
+/// The same copied out, so that it can be stored while the session goes on.
 struct SessionImage {
     SessionFacts facts;
     core::Tin tin;
     History history;
     std::uint64_t next_polygon = 1;
     std::string digest;  ///< running; see ChangeLog
+
+    SessionParts parts() const { return {facts, tin, history, next_polygon, digest}; }
 };
 
 using VersionOutcome = std::variant<core::Tin, VersionGone, VersionAhead, core::Errors>;
@@ -91,6 +102,8 @@ class Session {
     std::shared_ptr<Session> fork(std::string id, std::string birth) const;
     /// Takes the readers' lock for the time of a copy.
     SessionImage image() const;
+    /// Without a copy. Requires: nobody else has the session yet.
+    SessionParts parts() const { return {facts_, tin_, history_, next_polygon_, digest_}; }
 
     /// From now on no change is told of before the log has kept it; nobody sees it earlier, for the
     /// writer's lock is held meanwhile. What the log refuses is taken back. Requires: nobody else

@@ -4,6 +4,7 @@
 #include <new>
 #include <utility>
 
+#include "server/log.hpp"
 #include "server/session_store.hpp"
 
 namespace tinsmith::server {
@@ -50,10 +51,13 @@ std::shared_ptr<Session> SessionStore::load(Entry& entry) {
         return nullptr;
     }
     if (when_loaded) when_loaded(loaded);
-    const std::unique_lock lock(mutex_);
-    const auto found = entries_.find(entry.facts.id);
-    if (found == entries_.end() || found->second.get() != &entry) return nullptr;
-    entry.session = loaded.session;
+    {
+        const std::unique_lock lock(mutex_);
+        const auto found = entries_.find(entry.facts.id);
+        if (found == entries_.end() || found->second.get() != &entry) return nullptr;
+        entry.session = loaded.session;
+    }
+    vault_->tell_if_due(*loaded.session);
     return loaded.session;
 }
 
@@ -65,8 +69,14 @@ bool SessionStore::make_room(std::size_t bytes, Freed& freed) {
     if (sum <= most - bytes) return true;
     if (vault_ == nullptr) return false;
     std::vector<Entry*> idle;
-    for (const auto& [id, entry] : entries_)
-        if (entry->session && entry->session.use_count() == 1) idle.push_back(entry.get());
+    std::size_t idle_bytes = 0;
+    for (const auto& [id, entry] : entries_) {
+        if (!entry->session || entry->session.use_count() != 1) continue;
+        idle.push_back(entry.get());
+        idle_bytes += entry->session->counts().memory_bytes;
+    }
+    if (sum - std::min(sum, idle_bytes) > most - bytes) return false;  // nobody leaves in vain
+    freed.reserve(freed.size() + idle.size());
     std::ranges::sort(idle, {}, [](const Entry* entry) { return entry->used.load(); });
     for (Entry* entry : idle) {
         if (sum <= most - bytes) break;
@@ -95,25 +105,32 @@ std::optional<api::SessionView> SessionStore::remove_damaged(const std::string& 
 }
 
 std::vector<std::string> SessionStore::remove_unused_since(std::int64_t unix_seconds) {
-    std::vector<std::pair<std::string, EntryPtr>> unused;
+    const auto is_unused = [&](const Entry& entry) {
+        return !entry.is_being_made && entry.damage.empty() && last_use(entry) < unix_seconds &&
+               (!entry.session || entry.session.use_count() == 1);
+    };
+    std::vector<std::string> unused;
     {
-        const std::unique_lock lock(mutex_);
-        for (auto place = entries_.begin(); place != entries_.end(); ++place) {
-            const Entry& entry = *place->second;
-            const bool is_idle = !entry.is_being_made && entry.damage.empty() &&
-                                 (!entry.session || entry.session.use_count() == 1);
-            if (!is_idle || last_use(entry) >= unix_seconds) continue;
-            unused.emplace_back(place->first, nullptr);
-            unused.back().second = hold_back(place);
-        }
+        const std::shared_lock lock(mutex_);
+        for (const auto& [id, entry] : entries_)
+            if (is_unused(*entry)) unused.push_back(id);
     }
     std::vector<std::string> births;
-    for (const auto& [id, entry] : unused) {
+    births.reserve(unused.size());
+    for (const std::string& id : unused) {
+        EntryPtr going;
+        {
+            const std::unique_lock lock(mutex_);
+            const auto found = entries_.find(id);
+            if (found == entries_.end() || !is_unused(*found->second)) continue;
+            going = hold_back(found);
+        }
         try {
-            forget_held_back(id, entry);
-            births.push_back(entry->facts.birth);
-        } catch (const StorageFault&) {
-            continue;  // another time
+            forget_held_back(id, going);
+            births.push_back(std::move(going->facts.birth));
+        } catch (const std::exception& error) {
+            log_event(LogLevel::Warning, "not_expired",
+                      "session \"" + id + "\" cannot be ended now: " + error.what());
         }
     }
     return births;
@@ -142,8 +159,12 @@ void SessionStore::load_all(const std::function<bool()>& go_on) {
         const std::int64_t before = -used;
         try {
             find(id, {});
-        } catch (const SessionIsDamaged&) {
-            continue;  // told by whoever looks at the totals and lists
+        } catch (const SessionIsDamaged& damaged) {
+            log_event(LogLevel::Error, "session_damaged",
+                      "session \"" + id + "\" is out of service: " + damaged.what());
+        } catch (const std::exception& error) {
+            log_event(LogLevel::Warning, "not_loaded",
+                      "session \"" + id + "\" is loaded when it is asked for: " + error.what());
         }
         const std::shared_lock lock(mutex_);
         if (const auto found = entries_.find(id); found != entries_.end())
@@ -165,11 +186,16 @@ void SessionStore::snapshot(const std::string& id) {
     vault_->snapshot(*session);
 }
 
-std::vector<std::string> SessionStore::ids_in_memory() const {
-    const std::shared_lock lock(mutex_);
+std::vector<std::string> SessionStore::ids_with_tail() const {
     std::vector<std::string> ids;
-    for (const auto& [id, entry] : entries_)
-        if (entry->session) ids.push_back(id);
+    if (vault_ == nullptr) return ids;
+    for (const VaultEntry& entry : vault_->entries())
+        if (entry.tail > 0 && entry.damage.empty()) ids.push_back(entry.facts.id);
+    std::ranges::stable_partition(ids, [this](const std::string& id) {
+        const std::shared_lock lock(mutex_);
+        const auto found = entries_.find(id);
+        return found != entries_.end() && found->second->session;
+    });
     return ids;
 }
 

@@ -45,7 +45,14 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session, const A
         entries_.emplace(id, entry);
     }
     try {
-        if (vault_ != nullptr) vault_->create(*session, asker.id);
+        if (vault_ != nullptr) {
+            const auto bytes = borrow(entry->counts.memory_bytes);  // that are written
+            if (!bytes) {
+                let_go(id);
+                return StoreRefusal::NoMemory;
+            }
+            vault_->create(*session, asker.id);
+        }
     } catch (...) {
         let_go(id);
         throw;

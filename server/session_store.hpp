@@ -121,7 +121,8 @@ class SessionStore {
     /// Ends a session that is out of service; nothing where it is not, or not the asker's to see.
     /// Throws StorageFault.
     std::optional<api::SessionView> remove_damaged(const std::string& id, const Asker& asker);
-    /// Ends those that nobody asked for since then. Returns their births.
+    /// Ends those that nobody asked for since then. Returns their births. What cannot be ended is
+    /// logged, and stays.
     std::vector<std::string> remove_unused_since(std::int64_t unix_seconds);
 
     /// Whether this very session, and not another under its id, is still here.
@@ -142,12 +143,15 @@ class SessionStore {
     /// Memory for copies; nothing where there is no room. The store outlives it.
     std::optional<BorrowedMemory> borrow(std::size_t bytes);
 
-    /// Loads sessions, the ones used last first, while there is room and `go_on` says so.
+    /// Loads sessions, the ones used last first, while there is room and `go_on` says so. What
+    /// cannot be loaded is logged.
     void load_all(const std::function<bool()>& go_on);
     /// Stores a session as it is. Nothing to do for those that are not in memory. Throws
     /// StorageFault, std::bad_alloc.
     void snapshot(const std::string& id);
-    std::vector<std::string> ids_in_memory() const;
+    /// Those that have changed since they were stored whole, in memory or not; the ones in memory
+    /// first. Throws StorageFault. Cost: a row for each session of the vault.
+    std::vector<std::string> ids_with_tail() const;
 
   private:
     struct Entry {

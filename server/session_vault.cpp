@@ -62,12 +62,12 @@ class ReadOnlyLog : public ChangeLog {
     const std::string why_;
 };
 
-SnapshotHead head_of(const SessionImage& image, const SessionCounts& counts) {
+SnapshotHead head_of(const SessionParts& parts, const SessionCounts& counts) {
     SnapshotHead head;
-    head.version = image.history.version();
+    head.version = parts.history.version();
     head.algorithm = core::kAlgorithm;
     head.format = kArchiveFormat;
-    head.digest = whole_digest(image.tin);
+    head.digest = whole_digest(parts.tin);
     head.view = pack(counts);
     return head;
 }
@@ -86,8 +86,9 @@ class SessionVault::Log : public ChangeLog {
                            key.print,          pack(change.counts)};
         const std::size_t bytes = entry.body.size() + entry.view.size();
         require(vault_.journal_->append(std::move(entry)));
-        add(bytes, change.seconds);
+        count(bytes, change.seconds);
         if (!key.key.empty()) add_keyed({change.counts.version, key.key, key.print});
+        tell_if_due();
     }
 
     /// A change whose key the journal knows by its entry alone, perhaps.
@@ -107,10 +108,16 @@ class SessionVault::Log : public ChangeLog {
         return taken;
     }
 
-    void add(std::size_t bytes, double seconds) {
+    void count(std::size_t bytes, double seconds) {
+        ++entries_;
+        bytes_ += bytes;
+        seconds_ = seconds_ + seconds;
+    }
+
+    void tell_if_due() {
         const TailBounds& most = vault_.tail_;
-        const bool is_due = ++entries_ >= most.entries || (bytes_ += bytes) >= most.bytes ||
-                            (seconds_ = seconds_ + seconds) >= most.seconds;
+        const bool is_due =
+            entries_ >= most.entries || bytes_ >= most.bytes || seconds_ >= most.seconds;
         if (is_due && !is_told_.exchange(true) && vault_.when_due) vault_.when_due(facts_.id);
     }
 
@@ -127,7 +134,7 @@ class SessionVault::Log : public ChangeLog {
         is_told_ = false;
         return tail;
     }
-    /// It came to nothing.
+    /// It came to nothing. Whoever asked for the snapshot knows, and is not told again.
     void give_back(const Tail& tail, std::vector<KeyedChange> keyed) {
         const std::lock_guard lock(mutex_);
         keyed_.insert(keyed_.begin(), std::make_move_iterator(keyed.begin()),
@@ -135,6 +142,7 @@ class SessionVault::Log : public ChangeLog {
         entries_ += tail.entries;
         bytes_ += tail.bytes;
         seconds_ = seconds_ + tail.seconds;
+        is_told_ = true;
     }
     bool has_tail() const { return entries_ > 0; }
 
@@ -168,6 +176,7 @@ std::vector<VaultEntry> SessionVault::entries() const {
         VaultEntry entry;
         entry.used = row.session.used;
         entry.made_by = key_of(row.session.key, std::move(row.session.print));
+        entry.tail = row.version - row.snapshot_version;
         entry.damage = std::move(row.damage);
         auto facts = unpack_facts(row.session.facts, entry.owner);
         auto counts = unpack_counts(row.view);
@@ -191,11 +200,11 @@ void SessionVault::create(Session& session, const std::string& owner) {
     const SessionFacts& facts = session.facts();
     const auto log = log_of(facts);
     session.start_log(log);
-    const SessionImage image = session.image();
+    const SessionParts parts = session.parts();
     const RequestKey& key = current_request_key();
     require(journal_->create(
         {facts.birth, facts.id, pack(facts, owner), stored_key(key), key.print, unix_seconds()},
-        head_of(image, session.counts()), pack(image)));
+        head_of(parts, session.counts()), pack(parts)));
 }
 
 LoadedSession SessionVault::load(const std::string& birth) {
@@ -239,7 +248,7 @@ LoadedSession SessionVault::load(const std::string& birth) {
         if (const auto fault = loaded.session->repeat(*asked, entry.version, entry.digest))
             throw SessionIsDamaged(*fault);
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-        log->add(entry.body.size() + entry.view.size(), took.count());
+        log->count(entry.body.size() + entry.view.size(), took.count());
         ++loaded.repeated;
         if (entry.key.empty()) continue;
         loaded.keyed.push_back({entry.version, std::move(entry.key), std::move(entry.print)});
@@ -247,6 +256,10 @@ LoadedSession SessionVault::load(const std::string& birth) {
     }
     loaded.session->start_log(log);
     return loaded;
+}
+
+void SessionVault::tell_if_due(const Session& session) {
+    if (const auto log = std::dynamic_pointer_cast<Log>(session.log())) log->tell_if_due();
 }
 
 void SessionVault::remove(const std::string& birth) {
@@ -280,8 +293,8 @@ void SessionVault::snapshot(const Session& session) {
         SnapshotHead head;
         {
             const SessionImage image = session.image();
-            head = head_of(image, session.counts());
-            bytes = pack(image);
+            head = head_of(image.parts(), session.counts());
+            bytes = pack(image.parts());
         }
         keyed = log->take_keyed(head.version);
         require(journal_->write_snapshot(session.facts().birth, head, bytes,

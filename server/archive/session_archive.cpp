@@ -28,8 +28,8 @@ std::optional<T> unpacked(std::string_view bytes) {
 
 }  // namespace
 
-std::string pack(const SessionImage& image) {
-    const auto& [facts, tin, history, next_polygon, digest] = image;
+std::string pack(const SessionParts& parts) {
+    const auto& [facts, tin, history, next_polygon, digest] = parts;
     Packer pack;
     pack.reserve(tin.memory_bytes() + history.memory_bytes());
     pack(facts, tin, history, next_polygon, digest);

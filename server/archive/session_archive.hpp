@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kArchiveFormat = 1;
 // that they are the ones that were written is for others to check, by a digest.
 // Cost: linear in the bytes.
 
-std::string pack(const SessionImage& image);
+std::string pack(const SessionParts& parts);
 /// The history keeps as much as `limits` say from then on.
 std::optional<SessionImage> unpack_image(std::string_view bytes, HistoryLimits limits);
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
-#include <csignal>
 #include <exception>
 #include <future>
 #include <string>
-
-#include <unistd.h>
 
 #include "server/answer_finish.hpp"
 #include "server/commands/commands.hpp"
@@ -30,6 +27,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// After edits have given up, for their answers.
+constexpr std::chrono::seconds kForAnswers{1};
+
 Clock::duration seconds_of(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
@@ -42,10 +42,6 @@ std::string url_of(const std::string& host, int port) {
 int fail(const std::string& reason) {
     log_event(LogLevel::Error, "failed", reason);
     return kExitRefused;
-}
-
-void wake_main() {
-    ::kill(::getpid(), SIGTERM);
 }
 
 /// The sessions that were stored. Those that cannot be read are told of, and stop nothing.
@@ -63,9 +59,9 @@ std::string load_stored(Services& services) {
               std::to_string(totals.in_memory) + " of " + std::to_string(totals.sessions) +
                   " stored sessions are in memory, " + std::to_string(totals.out_of_service) +
                   " out of service",
-              {{"sessions", std::to_string(totals.sessions)},
-               {"in_memory", std::to_string(totals.in_memory)},
-               {"out_of_service", std::to_string(totals.out_of_service)}});
+              {{"sessions", totals.sessions},
+               {"in_memory", totals.in_memory},
+               {"out_of_service", totals.out_of_service}});
     return {};
 }
 
@@ -98,31 +94,28 @@ class Startup {
 
     /// Waits for the end. Empty: it has not failed.
     std::string error() {
-        std::string error = error_.get();
-        return failed_ ? error : std::string();
+        if (error_.valid()) why_ = error_.get();
+        return failed_ ? why_ : std::string();
     }
 
   private:
     std::string run_or_wake() {
+        std::string error;
         try {
-            std::string error = run();
-            if (!error.empty()) give_up();
-            return error;
-        } catch (...) {
-            give_up();
-            throw;
+            error = run();
+        } catch (const std::exception& failure) {
+            error = std::string("the start failed: ") + failure.what();
         }
-    }
-
-    void give_up() {
-        failed_ = !work_.stopped();
-        wake_main();
+        if (error.empty() || work_.stopped()) return error;
+        failed_ = true;
+        StopSignals::wake();
+        return error;
     }
 
     std::string run() {
         const WorkScope scope(work_);
         std::string error = load_sessions(services_, config_);
-        if (!error.empty()) return error;
+        if (!error.empty() || work_.stopped()) return error;
         if (!config_.port_file.empty()) {
             error = write_file_atomically(config_.port_file, std::to_string(port_) + "\n");
             if (!error.empty()) return "--port-file: " + error;
@@ -138,15 +131,17 @@ class Startup {
     const int port_;
     Work work_;
     std::atomic<bool> failed_{false};
+    std::string why_;                 ///< once it has been waited for
     std::future<std::string> error_;  ///< last: its thread uses the above
 };
 
-/// Serves until a signal comes or the start fails, then drains. An exit code.
+/// Serves until a signal comes or the start fails, then drains. An exit code. Where the time is up
+/// the watchdog ends the process.
 int serve_until_stopped(HttpServer& server, Services& services, const ServeConfig& config, int port,
-                        const StopSignals& signals, ServingKeys& keys) {
+                        const StopSignals& signals, Watchdog& watchdog, ServingKeys& keys) {
     auto served = std::async(std::launch::async, [&server] {
         const bool fine = server.serve();
-        if (!fine) wake_main();
+        if (!fine) StopSignals::wake();
         return fine;
     });
     const std::string url = url_of(config.http.host, port);
@@ -159,7 +154,8 @@ int serve_until_stopped(HttpServer& server, Services& services, const ServeConfi
     const auto delay = has_failed ? Clock::duration(0) : seconds_of(config.drain_delay);
     const auto grace = has_failed ? Clock::duration(0) : seconds_of(config.grace);
     const Clock::time_point end = Clock::now() + delay + grace + kLastWait;
-    const Watchdog watchdog(end);
+    watchdog.start(end, has_failed ? kExitRefused : kExitOk);
+    int code = has_failed ? fail(startup.error()) : kExitOk;
     services.readiness.enter(Readiness::Phase::Draining);
     startup.stop();
     server.drain();
@@ -173,13 +169,15 @@ int serve_until_stopped(HttpServer& server, Services& services, const ServeConfi
     served.wait_for(grace);
     services.stopping = true;
     services.jobs.shut_down();
-    const bool fine = served.get();
+    // A connection may take its time to end; what its request still changes is in the log, and
+    // repeated by the next start.
+    served.wait_for(kForAnswers);
     const std::string error = startup.error();
-    if (services.before_exit) services.before_exit(end - std::chrono::milliseconds(500));
-    if (!error.empty()) return fail(error);
-    if (!fine) return fail("the listening socket failed");
-    log_event(LogLevel::Info, "stopped", "stopped");
-    return kExitOk;
+    if (code == kExitOk && !error.empty()) code = fail(error);
+    if (services.before_exit && services.readiness.has_started())
+        services.before_exit(end - std::chrono::milliseconds(500));
+    if (!served.get() && code == kExitOk) code = fail("the listening socket failed");
+    return code;
 }
 
 /// No vault where none is asked for; or why there is none.
@@ -191,13 +189,9 @@ std::variant<std::unique_ptr<SessionVault>, std::string> open_vault(const ServeC
     return SessionVault::open(options, {limits.max_history, limits.max_history_bytes});
 }
 
-}  // namespace
-
-int run_serve(const ServeConfig& config) {
-    ServingKeys keys(config);
-    const StopSignals signals(keys.has_file());  // before the first thread: it inherits the mask
-    set_log_format(config.log_format);
-    set_log_level(config.log_level);
+/// From the sessions to their end.
+int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watchdog,
+          ServingKeys& keys) {
     auto vault = open_vault(config);
     if (const auto* why = std::get_if<std::string>(&vault)) return fail("--data: " + *why);
     if (const std::string why = keys.start(); !why.empty()) return fail(why);
@@ -245,7 +239,20 @@ int run_serve(const ServeConfig& config) {
         services.page = PageFiles::read(viewer, error);
         if (!services.page.is_there()) return fail("--viewer: " + error);
     }
-    return serve_until_stopped(server, services, config, port, signals, keys);
+    return serve_until_stopped(server, services, config, port, signals, watchdog, keys);
+}
+
+}  // namespace
+
+int run_serve(const ServeConfig& config) {
+    ServingKeys keys(config);
+    const StopSignals signals(keys.has_file());  // before the first thread: it inherits the mask
+    set_log_format(config.log_format);
+    set_log_level(config.log_level);
+    Watchdog watchdog;  // outlives all that may hold up the end
+    const int code = serve(config, signals, watchdog, keys);
+    if (code == kExitOk) log_event(LogLevel::Info, "stopped", "stopped");
+    return code;
 }
 
 }  // namespace tinsmith::server

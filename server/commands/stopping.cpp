@@ -2,18 +2,40 @@
 #include "server/commands/stopping.hpp"
 
 #include <cstdlib>
+#include <future>
+#include <memory>
 
-#include "server/config.hpp"
+#include <unistd.h>
+
 #include "server/log.hpp"
 
 namespace tinsmith::server {
 
+namespace {
+
+/// For which the last line of the log is waited for: nobody may read it.
+constexpr std::chrono::milliseconds kLastLine{200};
+
+void tell_forced() {
+    const auto told = std::make_shared<std::promise<void>>();
+    std::thread([told] {
+        log_event(LogLevel::Warning, "stop_forced",
+                  "stopped with work under way, which did not end in time");
+        told->set_value();
+    }).detach();
+    told->get_future().wait_for(kLastLine);
+}
+
+}  // namespace
+
 StopSignals::StopSignals(bool hangup) {
-    sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
-    if (hangup) sigaddset(&set_, SIGHUP);
-    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    sigemptyset(&stopping_);
+    sigaddset(&stopping_, SIGINT);
+    sigaddset(&stopping_, SIGTERM);
+    all_ = stopping_;
+    sigaddset(&all_, SIGUSR1);
+    if (hangup) sigaddset(&all_, SIGHUP);
+    pthread_sigmask(SIG_BLOCK, &all_, nullptr);
     // A file that may not grow (ulimit -f) is an error of the write, as a full disk is.
     std::signal(SIGXFSZ, SIG_IGN);
 }
@@ -21,25 +43,28 @@ StopSignals::StopSignals(bool hangup) {
 void StopSignals::wait(const std::function<void()>& on_hangup) const {
     for (;;) {
         int signal = 0;
-        sigwait(&set_, &signal);
+        sigwait(&all_, &signal);
         if (signal != SIGHUP) return;
         if (on_hangup) on_hangup();
     }
 }
 
-void StopSignals::release() const {
-    if (sigismember(&set_, SIGHUP) == 1) std::signal(SIGHUP, SIG_IGN);  // nothing to read for
-    pthread_sigmask(SIG_UNBLOCK, &set_, nullptr);
+void StopSignals::wake() {
+    ::kill(::getpid(), SIGUSR1);
 }
 
-Watchdog::Watchdog(Time end)
-    : thread_([this, end] {
-          std::unique_lock lock(mutex_);
-          if (changed_.wait_until(lock, end, [this] { return over_; })) return;
-          log_event(LogLevel::Warning, "stop_forced",
-                    "stopped with work under way, which did not end in time");
-          std::_Exit(kExitOk);
-      }) {}
+void StopSignals::release() const {
+    pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);
+}
+
+void Watchdog::start(Time end, int exit_code) {
+    thread_ = std::thread([this, end, exit_code] {
+        std::unique_lock lock(mutex_);
+        if (changed_.wait_until(lock, end, [this] { return over_; })) return;
+        tell_forced();
+        std::_Exit(exit_code);
+    });
+}
 
 Watchdog::~Watchdog() {
     {
@@ -47,7 +72,7 @@ Watchdog::~Watchdog() {
         over_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
 }
 
 }  // namespace tinsmith::server

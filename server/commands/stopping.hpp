@@ -15,32 +15,38 @@ namespace tinsmith::server {
 inline constexpr std::chrono::seconds kLastWait{5};
 
 /// SIGINT and SIGTERM, taken off every thread that is started later so that only `wait` meets
-/// them: no code of ours runs in a signal handler. SIGXFSZ is ignored. With `hangup` SIGHUP is
-/// taken off them too, and means that something is to be read again.
+/// them: no code of ours runs in a signal handler. SIGXFSZ is ignored, and SIGUSR1 is ours. With
+/// `hangup` SIGHUP is taken off them too, and means that something is to be read again.
 class StopSignals {
   public:
     explicit StopSignals(bool hangup = false);
 
-    /// Returns when it is to stop. Calls `on_hangup` here at each SIGHUP.
+    /// Until one of them comes, or `wake`. Calls `on_hangup` here at each SIGHUP.
     void wait(const std::function<void()>& on_hangup = {}) const;
+    /// Ends the wait, or nothing where it has ended. From any thread.
+    static void wake();
 
-    /// From now on they end the process at once: for those who press Ctrl-C twice.
+    /// From now on SIGINT and SIGTERM end the process at once: for those who press Ctrl-C twice.
     void release() const;
 
   private:
-    sigset_t set_{};
+    sigset_t stopping_{};
+    sigset_t all_{};
 };
 
-/// Ends the process with exit code 0 when it still lives at that time, whatever it does: what
+/// Ends the process when it still lives at a time, whatever it does and whoever holds the log: what
 /// stops it has a bound. Requires: nothing that was acknowledged is lost by an end at any moment.
 class Watchdog {
   public:
     using Time = std::chrono::steady_clock::time_point;
 
-    explicit Watchdog(Time end);
+    Watchdog() = default;
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
+
+    /// Once.
+    void start(Time end, int exit_code);
 
   private:
     std::mutex mutex_;

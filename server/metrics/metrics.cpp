@@ -148,6 +148,7 @@ const RouteMeter& Metrics::route(std::string_view pattern) {
 void Metrics::request(const RouteMeter* route, std::string_view method, int status, double seconds,
                       std::size_t bytes_in, std::size_t bytes_out) noexcept {
     (route != nullptr ? *route : none_).record(method, status, seconds);
+    if (status == 500) ++defects_;
     bytes_in_.fetch_add(bytes_in, std::memory_order_relaxed);
     bytes_out_.fetch_add(bytes_out, std::memory_order_relaxed);
 }
@@ -221,6 +222,9 @@ std::vector<MetricFamily> Metrics::collect() const {
     count("tinsmith_vertices_added_total", "Vertices that edits added.", vertices_);
     count("tinsmith_triangles_added_total", "Triangles that edits added.", triangles_);
     count("tinsmith_edges_swapped_total", "Edges that edits swapped.", swaps_);
+    count("tinsmith_defects_total",
+          "Requests that met a defect of the server: their series by route begin with the first.",
+          defects_);
     count("tinsmith_answers_replayed_total",
           "Retries by Idempotency-Key that were given the first answer again.", replayed_);
     all.push_back(gauge("tinsmith_http_requests_in_flight",

@@ -123,6 +123,7 @@ class Metrics {
     Count triangles_{0};
     Count swaps_{0};
     Count replayed_{0};
+    Count defects_{0};
     std::array<Count, 6> edits_{};  ///< by EditSort
 };
 

@@ -45,8 +45,9 @@ Response get_metrics(Services& services, const Request&, const PathArguments&) {
 Handler once_started(Services& services, Handler handler) {
     return [&services, handler = std::move(handler)](const Request& request,
                                                      const PathArguments& arguments) {
-        if (services.readiness.phase() != Readiness::Phase::Starting)
-            return handler(request, arguments);
+        // One that is told to stop while it starts never knows its sessions, nor which requests it
+        // has answered before.
+        if (services.readiness.has_started()) return handler(request, arguments);
         return refuse_unready(request, services.readiness.refusals());
     };
 }

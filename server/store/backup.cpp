@@ -69,6 +69,7 @@ std::optional<std::string> backup_store(const fs::path& folder, const fs::path& 
     if (!is_made && (!fs::is_directory(to, code) || !fs::is_empty(to, code)))
         return to.string() + " is there and is no empty folder: nothing is written over";
     auto why = copy_store(folder, to);
+    if (!why && is_made) why = sync(fs::absolute(to / "..", code));
     if (why && is_made) fs::remove(to, code);
     return why;
 }

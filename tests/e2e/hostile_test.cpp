@@ -63,6 +63,19 @@ TEST_F(Hostile, LengthsThatAreNone) {
     expect_refused(post("Content-Length: 1\r\nContent-Length: 5\r\n", "hello"), 400);
 }
 
+TEST_F(Hostile, NamesThatOthersReadAsTheLength) {
+    const std::string length = std::to_string(smuggled.size());
+    for (const std::string& header :
+         {"Content-Length : " + length, "Content-Length\t: " + length,
+          "X-Folded: 1\r\n Content-Length: " + length, std::string("Transfer-Encoding : chunked"),
+          "Content-Length" + std::string(1, '\0') + ": " + length, "Content Length: " + length})
+        expect_refused(post(header + "\r\n", smuggled), 400);
+}
+
+TEST_F(Hostile, RequestsForNoHost) {
+    expect_refused("GET /v1/limits HTTP/1.1\r\n\r\n", 400);
+}
+
 TEST_F(Hostile, BodiesWhereNoneBelong) {
     expect_refused(get("Content-Length: " + std::to_string(smuggled.size()) + "\r\n", smuggled),
                    400);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the binary tells of itself: figures for Prometheus and a log that nobody can forge.
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -169,7 +171,8 @@ TEST(Observe, SpeaksTextWhereItIsAskedTo) {
 }
 
 TEST(Observe, AlertsUseRealNames) {
-    ServerUnderTest server;
+    ScratchDirectory scratch;
+    ServerUnderTest server({"--data", scratch.file("data")});
     ASSERT_NE(server.port(), 0) << server.program().output();
     const PrometheusText text = scrape(server.port());
     const std::string page = content_of(std::string(TINSMITH_SOURCE_DIR) + "/docker/README.md");
@@ -182,12 +185,36 @@ TEST(Observe, AlertsUseRealNames) {
         ++alerts;
     EXPECT_GE(alerts, 5U);
     EXPECT_GE(names, 10U);
-    // The words that alerts on the log rest on are those that the program has.
-    const std::regex event(R"re(event="([a-z_]+)")re");
-    const std::string words = content_of(std::string(TINSMITH_SOURCE_DIR) + "/server/log.hpp");
-    for (std::sregex_iterator at(page.begin(), page.end(), event), end; at != end; ++at)
-        EXPECT_NE(words.find((*at)[1].str()), std::string::npos) << at->str();
     EXPECT_EQ(server.stop(), "");
+}
+
+std::set<std::string> words_in(const std::string& text, const char* pattern) {
+    const std::regex expression(pattern);
+    std::set<std::string> words;
+    for (std::sregex_iterator at(text.begin(), text.end(), expression), end; at != end; ++at)
+        words.insert((*at)[1].str());
+    return words;
+}
+
+TEST(Observe, EventsAreThoseOfThePage) {
+    const std::string root = TINSMITH_SOURCE_DIR;
+    std::set<std::string> logged;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(root + "/server")) {
+        if (file.path().extension() != ".cpp") continue;
+        logged.merge(
+            words_in(content_of(file.path().string()), R"re(log_event\([^";]*"([a-z_]+)")re"));
+    }
+    logged.insert("request");  // by log_request
+    const std::string page = content_of(root + "/docker/README.md");
+    const std::size_t table = page.find("| `event` |"), after = page.find("\n\n", table);
+    ASSERT_NE(after, std::string::npos);
+    std::set<std::string> told;
+    for (const std::string& cell :
+         words_in(page.substr(table, after - table), R"re(\n\| (`[a-z_`, ]+`) \|)re"))
+        told.merge(words_in(cell, "`([a-z_]+)`"));
+    EXPECT_EQ(logged, told);
+    for (const std::string& word : words_in(page, R"re(event=\\?"([a-z_]+))re"))
+        EXPECT_TRUE(told.contains(word)) << word;
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ class StartingServer {
         port_ = std::atoi(log.substr(url + std::string("http://127.0.0.1:").size(), 5).c_str());
     }
 
-    void give() const { write_content(pipe_, kSquare); }
+    void give(const std::string& terrain = kSquare) const { write_content(pipe_, terrain); }
     int port() const { return port_; }
     Program& program() { return *program_; }
 
@@ -131,6 +131,38 @@ TEST(ServiceStart, FailsWhereTheTerrainIsNotThere) {
     EXPECT_TRUE(has_logged(program, "failed")) << program.output();
     EXPECT_NE(program.output().find("--demo: "), std::string::npos);
     EXPECT_FALSE(has_logged(program, "started"));
+}
+
+TEST(ServiceStart, FailsAsLoudlyWhileAClientTakesItsTime) {
+    StartingServer server({"--grace", "600"});
+    ASSERT_NE(server.port(), 0) << server.program().output();
+    const Connection slow(server.port());
+    slow.send("POST /v1/sessions HTTP/1.1\r\nHost: x\r\nContent-Length: 500\r\n\r\n{");
+    server.give("no terrain");
+    EXPECT_EQ(server.program().wait(seconds(60)), 1) << server.program().output();
+    EXPECT_TRUE(has_logged(server.program(), "failed")) << server.program().output();
+}
+
+TEST(ServiceStop, DoesNothingForSessionsThatWereNotLoaded) {
+    StartingServer server({"--drain-delay", "600"});
+    ASSERT_NE(server.port(), 0) << server.program().output();
+    server.program().send_signal(SIGTERM);
+    ASSERT_TRUE(comes_to_log(server.program(), "draining"));
+    for (const char* method : {"GET", "PUT", "DELETE"})
+        EXPECT_EQ(ask(server.port(), method, "/v1/sessions/demo").status, 503) << method;
+    server.program().send_signal(SIGTERM);
+    EXPECT_EQ(server.program().wait(seconds(60)), 128 + SIGTERM);
+}
+
+TEST(ServiceStop, EndsInOrderWhereTheStartGivesUp) {
+    StartingServer server;
+    ASSERT_NE(server.port(), 0) << server.program().output();
+    server.program().send_signal(SIGTERM);
+    ASSERT_TRUE(comes_to_log(server.program(), "stopping"));
+    server.give(content_of(std::string(TINSMITH_SOURCE_DIR) + "/tests/data/jacksboro.tif"));
+    EXPECT_EQ(server.program().wait(seconds(60)), 0) << server.program().output();
+    EXPECT_FALSE(has_logged(server.program(), "started")) << server.program().output();
+    EXPECT_TRUE(has_logged(server.program(), "stopped")) << server.program().output();
 }
 
 TEST(ServiceStop, EndsAStartThatDoesNotEnd) {

@@ -25,7 +25,31 @@ inline constexpr const char* kSquare =
 inline constexpr const char* kParcel =
     R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]})";
 
-/// The routes as a client meets them, without a socket.
+/// Stands in front of the routes: says who asks, or answers instead.
+using Admit = std::function<std::optional<Response>(Request&)>;
+
+/// What a client is answered, without a socket; each answer is held against /openapi.json.
+inline Response ask(const Router& router, const Services& services, const std::string& method,
+                    const std::string& target, std::vector<NameValue> headers = {},
+                    const std::string& body = {}, const Admit& admit = {}) {
+    auto parsed = parse_target(target).value();
+    Request request;
+    request.method = method;
+    request.path = parsed.path;
+    request.query = std::move(parsed.query);
+    request.headers = std::move(headers);
+    request.body = body;
+    request.id = "test";
+    request.trace = parse_traceparent(request.header("traceparent").value_or(""));
+    auto refusal = admit ? admit(request) : std::nullopt;
+    Response response = refusal ? *std::move(refusal) : router.handle(request);
+    finish_answer(services.policy, request, response);
+    EXPECT_EQ(Description::get().complaint(request, response), "")
+        << method << " " << target << " is answered as /openapi.json does not say";
+    return response;
+}
+
+/// The routes as a client meets them.
 class Handlers : public ::testing::Test {
   protected:
     static Limits few_sessions() {
@@ -37,21 +61,7 @@ class Handlers : public ::testing::Test {
 
     Response ask(const std::string& method, const std::string& target,
                  std::vector<NameValue> headers = {}, const std::string& body = {}) {
-        auto parsed = parse_target(target).value();
-        Request request;
-        request.method = method;
-        request.path = parsed.path;
-        request.query = std::move(parsed.query);
-        request.headers = std::move(headers);
-        request.body = body;
-        request.id = "test";
-        request.trace = parse_traceparent(request.header("traceparent").value_or(""));
-        auto refusal = admit ? admit(request) : std::nullopt;
-        Response response = refusal ? *std::move(refusal) : router.handle(request);
-        finish_answer(services.policy, request, response);
-        EXPECT_EQ(Description::get().complaint(request, response), "")
-            << method << " " << target << " is answered as /openapi.json does not say";
-        return response;
+        return server::ask(router, services, method, target, std::move(headers), body, admit);
     }
 
     Response post(const std::string& target, const std::string& body,
@@ -90,7 +100,7 @@ class Handlers : public ::testing::Test {
     }
 
     /// What stands in front of the routes, if anything does.
-    std::function<std::optional<Response>(Request&)> admit;
+    Admit admit;
     Services services{few_sessions()};
     Router router{make_routes(services)};
 };

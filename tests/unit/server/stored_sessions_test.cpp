@@ -10,6 +10,7 @@
 #include "server/archive/session_archive.hpp"
 #include "server/routes/restored_answers.hpp"
 #include "server/session_keeper.hpp"
+#include "server/unix_time.hpp"
 #include "tests/store/failing_disk.hpp"
 #include "tests/unit/server/handlers.hpp"
 #include "tests/unit/server/store/journal_folder.hpp"
@@ -34,20 +35,12 @@ class Life {
 
     Response ask(const std::string& method, const std::string& target,
                  std::vector<NameValue> headers = {}, const std::string& body = {}) {
-        auto parsed = parse_target(target).value();
-        Request request;
-        request.method = method;
-        request.path = parsed.path;
-        request.query = std::move(parsed.query);
-        request.headers = std::move(headers);
-        if (!body.empty()) request.headers.emplace_back("content-type", "application/json");
-        request.body = body;
-        request.id = "test";
-        request.asker = asker;
-        Response response = router_->handle(request);
-        finish_answer(services_.policy, request, response);
-        EXPECT_EQ(Description::get().complaint(request, response), "") << method << " " << target;
-        return response;
+        if (!body.empty()) headers.emplace_back("content-type", "application/json");
+        return server::ask(*router_, services_, method, target, std::move(headers), body,
+                           [this](Request& request) {
+                               request.asker = asker;
+                               return std::optional<Response>();
+                           });
     }
     Response make(const std::string& id) { return ask("PUT", "/v1/sessions/" + id, {}, kSquare); }
     Response cut(const std::string& id, double at, std::vector<NameValue> headers = {}) {
@@ -63,6 +56,16 @@ class Life {
         return response.body;
     }
     json view(const std::string& id) { return json::parse(get(id)); }
+    /// Of all sessions, what does not depend on how much of them is in memory.
+    json list() {
+        json sessions = json::parse(ask("GET", "/v1/sessions").body)["sessions"];
+        for (json& session : sessions)
+            session.erase("memory_bytes");
+        return sessions;
+    }
+    std::size_t tail(const std::string& birth) {
+        return std::get<0>(services_.vault->journal().read(birth)).tail.size();
+    }
 
     static std::string header_of(const Response& response, const std::string& name) {
         for (const auto& [key, value] : response.headers)
@@ -129,7 +132,7 @@ TEST_F(StoredSessions, AreTheSameInTheNextLife) {
                                          "a/regions",  "a/mesh.glb?version=2"};
     for (const std::string& path : paths)
         before[path] = life().get(path);
-    const std::string list = life().ask("GET", "/v1/sessions").body;
+    const json list = life().list();
     const std::string tag = Life::header_of(life().ask("GET", "/v1/sessions/a"), "ETag");
     for (const bool is_in_order : {false, true}) {
         if (is_in_order) life().keeper().snapshot_all(steady_clock::time_point::max());
@@ -139,7 +142,7 @@ TEST_F(StoredSessions, AreTheSameInTheNextLife) {
             EXPECT_EQ(life().get(path) == before[path], true) << path;
         }
         EXPECT_EQ(Life::header_of(life().ask("GET", "/v1/sessions/a"), "ETag"), tag);
-        EXPECT_EQ(json::parse(life().ask("GET", "/v1/sessions").body)["sessions"].size(), 2U);
+        EXPECT_EQ(life().list(), list);
     }
     // And it goes on: ids and versions where they were.
     const json report = json::parse(life().cut("a", 8).body);
@@ -215,6 +218,16 @@ TEST_F(StoredSessions, LeaveMemoryForOthersAndComeBack) {
     EXPECT_EQ(list.size(), 13U);
     for (const json& session : list)
         EXPECT_EQ(session["version"], 3) << "loaded or not";
+    // What cannot come in drives nobody out.
+    EXPECT_FALSE(life().services().sessions.has_room(2 * limits_.max_memory_bytes));
+    EXPECT_FALSE(life().services().sessions.has_room(limits_.max_memory_bytes + 1));
+    const std::size_t in_memory = life().services().sessions.totals().in_memory;
+    const auto some = life().services().sessions.find("s1", {});
+    EXPECT_FALSE(life().services().sessions.has_room(limits_.max_memory_bytes));
+    EXPECT_GE(life().services().sessions.totals().in_memory, in_memory);
+    // What is stored in order is stored of all, in memory or not.
+    life().keeper().snapshot_all(steady_clock::time_point::max());
+    EXPECT_EQ(life().services().sessions.ids_with_tail().size(), 0U);
     // What somebody holds stays.
     const auto held = life().services().sessions.find("s0", {});
     for (int i = 1; i < 12; ++i)
@@ -262,6 +275,14 @@ TEST_F(StoredSessions, AreStoredAnewWhenTheirTailIsLong) {
     const std::string mesh = life().get("a/mesh.json");
     restart();
     EXPECT_EQ(life().get("a/mesh.json") == mesh, true);
+    EXPECT_EQ(life().tail(birth), 13 - stored);
+    for (int i = 0; i < 12; ++i)
+        ASSERT_EQ(life().cut("a", 2 + i % 4 * 2).status, 200);
+    ASSERT_GE(life().tail(birth), 10U);
+    restart({10, std::size_t{1} << 30, 1e9});
+    while (life().tail(birth) > 0 && steady_clock::now() < until)
+        std::this_thread::yield();
+    EXPECT_EQ(life().tail(birth), 0U) << "one that comes with a long tail";
 }
 
 TEST_F(StoredSessions, ThatAreDamagedAreOutOfServiceAlone) {
@@ -387,6 +408,11 @@ TEST_F(StoredSessions, RefuseEditsWhileTheDiskIsFullAndGoOnAfter) {
     }
     EXPECT_EQ(life().cut("a", 5).status, 200);
     EXPECT_EQ(life().make("b").status, 201);
+    // Time passes, but nothing can be written of it.
+    disk.fail(store_tests::FailingDisk::Work::Write, store_tests::FailingDisk::Fault::Full, 0,
+              UINT64_MAX);
+    EXPECT_TRUE(life().services().sessions.remove_unused_since(unix_seconds() + 10).empty());
+    disk.mend();
     const std::string after = life().get("a/mesh.json");
     restart();
     EXPECT_EQ(life().get("a/mesh.json") == after, true);

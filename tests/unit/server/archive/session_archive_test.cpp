@@ -43,13 +43,13 @@ TEST(SessionArchive, GivesBackWhatWentInToTheLastBit) {
         const auto session = work.make_session(kShortHistory);
         for (int i = 0; i < 30; ++i)
             work.ask(*session);
-        const std::string bytes = pack(session->image());
+        const std::string bytes = pack(session->image().parts());
         auto image = unpack_image(bytes, kShortHistory);
         ASSERT_TRUE(image);
         EXPECT_TRUE(test::same_tin(image->tin, session->copy_tin()));
         EXPECT_TRUE(core::check_tin(image->tin).empty());
         Session again(std::move(*image));
-        EXPECT_EQ(pack(again.image()), bytes);
+        EXPECT_EQ(pack(again.image().parts()), bytes);
         // They also go on in the same way, back into the past and forth.
         RandomWork same_work = work;
         for (int i = 0; i < 15; ++i) {
@@ -74,7 +74,7 @@ TEST(SessionArchive, SharesWhatWasShared) {
     const auto session = work.make_session();
     while (session->view().polygons < 3)
         work.ask(*session);
-    const auto image = unpack_image(pack(session->image()), {});
+    const auto image = unpack_image(pack(session->image().parts()), {});
     ASSERT_TRUE(image);
     for (const AppliedPtr& applied : image->history.applied()) {
         const Change* made = image->history.change_at(applied->version);
@@ -89,7 +89,7 @@ TEST(SessionArchive, MakesNothingOfBytesThatAreCutOrAreNone) {
     const auto session = work.make_session();
     for (int i = 0; i < 12; ++i)
         work.ask(*session);
-    const std::string bytes = pack(session->image());
+    const std::string bytes = pack(session->image().parts());
     for (std::size_t length = 0; length < bytes.size(); length += 1 + length / 50)
         EXPECT_FALSE(unpack_image(std::string_view(bytes).substr(0, length), {})) << length;
     EXPECT_FALSE(unpack_image(bytes + '\0', {}));
@@ -113,7 +113,7 @@ TEST(SessionLog, MakesTheSameSessionAgain) {
         const auto session = work.make_session(kShortHistory);
         const auto notebook = std::make_shared<Notebook>();
         session->start_log(notebook);
-        const std::string start = pack(session->image());
+        const std::string start = pack(session->image().parts());
         for (int i = 0; i < 30; ++i)
             work.ask(*session);
         Session again(*unpack_image(start, kShortHistory));
@@ -136,7 +136,7 @@ TEST(SessionLog, FindsAChangeThatComesOutOtherwise) {
     const auto session = work.make_session();
     const auto notebook = std::make_shared<Notebook>();
     session->start_log(notebook);
-    const std::string start = pack(session->image());
+    const std::string start = pack(session->image().parts());
     while (notebook->entries.empty())
         work.ask(*session);
     const auto& [asked, version, digest] = notebook->entries.front();
@@ -158,7 +158,7 @@ TEST(SessionLog, TakesBackWhatIsNotKept) {
         const auto notebook = std::make_shared<Notebook>();
         session->start_log(notebook);
         for (int i = 0; i < 25; ++i) {
-            const std::string before = pack(session->image());
+            const std::string before = pack(session->image().parts());
             notebook->refuses = true;
             RandomWork same_work = work;
             try {
@@ -166,7 +166,7 @@ TEST(SessionLog, TakesBackWhatIsNotKept) {
             } catch (const StorageFault&) {
                 ++refused;
             }
-            ASSERT_EQ(pack(session->image()) == before, true) << i;
+            ASSERT_EQ(pack(session->image().parts()) == before, true) << i;
             ASSERT_FALSE(session->is_lost());
             notebook->refuses = false;
             work.ask(*session);
