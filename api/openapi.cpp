@@ -25,6 +25,8 @@ constexpr const char* kAnswers = "x-answers";
 constexpr const char* kAnswerHeaders = "x-answer-headers";
 constexpr const char* kRecorded = "x-recorded";
 constexpr const char* kQuery = "x-query";
+/// The security scheme of what wants an API key.
+constexpr const char* kApiKey = "ApiKey";
 /// The names of those options of a mesh that an edit's answer takes too.
 constexpr const char* kMeshQuery = "x-mesh-query";
 
@@ -45,6 +47,11 @@ Json reference(const std::string& to) {
     return {{"$ref", "#/components/" + to}};
 }
 
+/// Where a server that has API keys wants one (server/keys/gate.hpp).
+bool wants_key(std::string_view path) {
+    return path.starts_with("/v1/") || path == "/metrics";
+}
+
 /// All parts, one over the other: objects of the same place become one.
 Json joined_parts() {
     Json document = Json::object();
@@ -56,9 +63,15 @@ Json joined_parts() {
 /// One operation of the document on its way from what the files say to what is served.
 class Operation {
   public:
-    Operation(const Json& document, const std::string& method, Json& operation)
+    Operation(const Json& document, std::string_view path, const std::string& method,
+              Json& operation)
         : document_(document), operation_(operation) {
         add_words(document_[kProblems]["any"]);
+        if (wants_key(path)) {
+            add_words(document_[kProblems]["with_key"]);
+            // Or none, where the operator has made none.
+            operation_["security"] = {{{kApiKey, Json::array()}}, Json::object()};
+        }
         if (method != "get") add_words(document_[kProblems]["with_body"]);
     }
 
@@ -210,9 +223,9 @@ void erase_everywhere(Json& value, const char* name) {
 std::string make_document() {
     const Json parts = joined_parts();
     Json document = parts;
-    for (auto& path : document["paths"]) {
-        for (const auto& [method, operation] : path.items())
-            Operation(parts, method, operation).complete();
+    for (const auto& [path, item] : document["paths"].items()) {
+        for (const auto& [method, operation] : item.items())
+            Operation(parts, path, method, operation).complete();
     }
     document["components"]["schemas"]["ProblemType"] = problem_types();
     document["components"].erase("responses");  // each stands where it was named

@@ -13,6 +13,7 @@ namespace tinsmith::api {
 /// - "x-problems" of an operation, of its body and of each of its parameters name problems by their
 ///   words. They become the answers of their statuses, from the table of problems, together with
 ///   those that any request may meet (problems.json).
+/// - What wants an API key has a security scheme and the problems of those without.
 /// - "x-answers" of a parameter are answers of its operation, "x-answer-headers" are headers of
 /// every
 ///   answer of it.

@@ -25,6 +25,7 @@ using enum ProblemType;
 
 constexpr std::array kTable{
     Row{BadRequest, "bad-request", "The request is malformed", 400},
+    Row{KeyRequired, "api-key-required", "An API key is required", 401},
     Row{MalformedBody, "malformed-body", "The body is not the format it claims to be", 400},
     Row{InvalidContent, "invalid-content", "The body cannot be used as it is", 422},
     Row{NotAvailable, "not-available", "Not available in this version", 422},
@@ -60,6 +61,7 @@ constexpr std::array kTable{
     Row{NoSuchVersion, "no-such-version", "The session has no such version yet", 404},
     Row{VersionGone, "version-gone", "The version is no longer kept", 410},
     Row{TooManySessions, "too-many-sessions", "No room for another session", 429},
+    Row{TooManyRequests, "too-many-requests", "Too many requests of this API key", 429},
     Row{OutOfMemory, "out-of-memory", "Not enough memory", 507},
     Row{StorageUnavailable, "storage-unavailable", "Nothing can be stored now", 503},
     Row{SessionOutOfService, "session-out-of-service", "The session cannot be read", 503},

@@ -14,6 +14,7 @@ namespace tinsmith::api {
 /// one table in problem.cpp; nowhere else is an error given a status number.
 enum class ProblemType {
     BadRequest,            ///< the request's own form is broken
+    KeyRequired,           ///< no API key, or none of this server's
     MalformedBody,         ///< the body is not the format it claims to be
     InvalidContent,        ///< well formed, but not something that can be done
     NotAvailable,          ///< a known wish that this version does not grant
@@ -49,6 +50,7 @@ enum class ProblemType {
     NoSuchVersion,   ///< not yet
     VersionGone,     ///< no longer kept
     TooManySessions,
+    TooManyRequests,  ///< of one API key, at the same time or in a second
     OutOfMemory,
     StorageUnavailable,   ///< the disk takes nothing now; nothing was changed
     SessionOutOfService,  ///< what is stored of it is damaged

@@ -130,11 +130,19 @@ std::string write_session_list(std::span<const SessionView> sessions) {
     return text_of({{"sessions", std::move(list)}});
 }
 
-std::string write_limits(std::span<const std::pair<std::string_view, double>> limits) {
+std::string write_limits(std::span<const std::pair<std::string_view, double>> limits,
+                         const std::optional<KeyView>& key) {
     Json json = Json::object();
-    for (const auto& [name, value] : limits) {
+    const auto add = [](Json& to, std::string_view name, double value) {
         const bool is_whole = value == std::floor(value) && std::fabs(value) < 9e15;
-        json[std::string(name)] = is_whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+        to[std::string(name)] = is_whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+    };
+    for (const auto& [name, value] : limits)
+        add(json, name, value);
+    if (key) {
+        Json& told = json["key"] = {{"name", key->name}, {"id", key->id}};
+        for (const auto& [name, value] : key->quotas)
+            add(told, name, value);
     }
     return text_of(json);
 }

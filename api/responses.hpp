@@ -52,8 +52,16 @@ std::string write_session(const SessionView& session);
 std::string write_session_list(std::span<const SessionView> sessions);
 std::string write_report(const ReportView& view);
 
-/// An object of numbers, in the order given.
-std::string write_limits(std::span<const std::pair<std::string_view, double>> limits);
+/// What the key that asks is allowed; quotas that are not set are not there.
+struct KeyView {
+    std::string_view name;
+    std::string_view id;
+    std::vector<std::pair<std::string_view, double>> quotas;
+};
+
+/// An object of numbers, in the order given, and last "key" where one asks.
+std::string write_limits(std::span<const std::pair<std::string_view, double>> limits,
+                         const std::optional<KeyView>& key = {});
 
 /// {"vertices": [[x,y,z],...], "triangles": [[a,b,c],...]} in slot order. No document tree is
 /// built: the text is the only memory taken. Requires: finite coordinates. Cost: linear.

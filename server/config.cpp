@@ -19,7 +19,8 @@ constexpr const char* kTopFooter =
     "  tinsmith serve --demo\n"
     "  tinsmith integrate terrain.tif parcels.geojson -o out.glb --report report.json\n"
     "  tinsmith check mesh.json\n"
-    "  tinsmith backup --data /data /backup/monday\n\n"
+    "  tinsmith backup --data /data /backup/monday\n"
+    "  tinsmith key add alice --data /data\n\n"
     "Exit codes: 0 done, 1 the input was refused, 2 wrong usage.";
 
 constexpr const char* kServeFooter =
@@ -33,9 +34,14 @@ constexpr const char* kServeFooter =
     "under way have --grace seconds to end, then edits give up and nothing of them stays; 5\n"
     "seconds later the process has ended whatever it did. Its exit code is 0. A second signal\n"
     "ends it at once.\n\n"
+    "Where there are API keys (tinsmith key), all of /v1 and /metrics want one: Authorization:\n"
+    "Bearer KEY. Beyond this machine the server does not start without. SIGHUP: the file of keys "
+    "is\n"
+    "read again.\n\n"
     "Examples:\n"
     "  tinsmith serve --demo\n"
     "  tinsmith serve --data /data\n"
+    "  tinsmith serve --data /data --host 0.0.0.0 --first-key\n"
     "  tinsmith serve --port 0 --port-file /run/tinsmith.port\n"
     "  TINSMITH_MAX_SESSIONS=8 tinsmith serve";
 
@@ -45,6 +51,14 @@ constexpr const char* kIntegrateFooter =
     "Examples:\n"
     "  tinsmith integrate terrain.tif lake.geojson -o out.glb --report report.json\n"
     "  tinsmith integrate mesh.json road.geojson -o out.glb --elevation own --snap 0.05";
+
+constexpr const char* kKeyFooter =
+    "The file has the SHA-256 of each key and not the key. A server that runs reads it again on\n"
+    "SIGHUP. What a key makes belongs to its id: whoever has another key does not see it.\n\n"
+    "Examples:\n"
+    "  tinsmith key add alice --data /data --max-sessions 10\n"
+    "  tinsmith key list --keys /etc/tinsmith/keys\n"
+    "  tinsmith key renew alice --data /data && kill -HUP $(pidof tinsmith)";
 
 /// A hundred years: beyond, times are no times any more.
 constexpr std::uint64_t kLongestLife = std::uint64_t{100} * 365 * 24 * 3600;
@@ -174,6 +188,16 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
     add_setting(*serve, "viewer", config.viewer, "Folder of the built page for /");
     add_setting(*serve, "data", config.data,
                 "Folder to store sessions in, made if need be; none: they end with the process");
+    add_setting(*serve, "keys", config.keys,
+                "File of API keys; by default \"keys\" in the folder of --data");
+    serve
+        ->add_flag("--first-key", config.first_key,
+                   "Make an API key where there is none, and print it this once")
+        ->envname("TINSMITH_FIRST_KEY");
+    serve
+        ->add_flag("--insecure", config.insecure,
+                   "Listen beyond this machine without API keys: everyone may do everything")
+        ->envname("TINSMITH_INSECURE");
     add_setting(*serve, "threads", http.threads, "Connections served at the same time")
         ->check(CLI::Range(2, 1024));
     add_limits(*serve, http.limits);
@@ -256,7 +280,51 @@ CLI::App* add_backup(CLI::App& app, BackupConfig& config) {
     return backup;
 }
 
+void add_quotas(CLI::App& app, KeyQuotas& quotas) {
+    app.add_option("--max-sessions", quotas.max_sessions, "Sessions of the key")
+        ->check(digit_first());
+    app.add_option("--max-memory-bytes", quotas.max_memory_bytes,
+                   "Of its sessions, in memory or not (256MB, 1GB)")
+        ->transform(CLI::AsSizeValue(false))
+        ->transform(digit_first());
+    app.add_option("--max-requests", quotas.max_requests, "Requests of the key at the same time")
+        ->check(digit_first());
+    app.add_option("--max-requests-per-second", quotas.max_requests_per_second,
+                   "Requests that it may begin in a second")
+        ->check(digit_first())
+        ->check(CLI::PositiveNumber);
+}
+
+CLI::App* add_key(CLI::App& app, KeyConfig& config) {
+    CLI::App* key = app.add_subcommand("key", "Add, list, renew and remove API keys of a server");
+    key->footer(kKeyFooter);
+    key->require_subcommand(1);
+    key->fallthrough();
+    add_setting(*key, "keys", config.keys, "The file of keys, made if need be");
+    add_setting(*key, "data", config.data, "The server's folder: its file of keys is \"keys\"");
+    using Action = KeyConfig::Action;
+    const auto on = [&](const char* name, Action action, const char* text) {
+        CLI::App* command = key->add_subcommand(name, text);
+        command->callback([&config, action] { config.action = action; });
+        if (action != Action::List)
+            command->add_option("NAME", config.name, "What people call the key")->required();
+        return command;
+    };
+    CLI::App* add = on("add", Action::Add, "Make a key and print it this once");
+    add->add_option("--id", config.id, "Give it what a key of that id made, which is gone");
+    add_quotas(*add, config.quotas);
+    on("list", Action::List, "Names, ids, times and quotas; keys are not known");
+    on("renew", Action::Renew, "Print a new key for the old one, with the same sessions");
+    on("remove", Action::Remove, "Forget a key: its sessions stay stored, for nobody to see");
+    return key;
+}
+
 }  // namespace
+
+std::string key_file_of(const std::string& keys, const std::string& data) {
+    if (!keys.empty() || data.empty()) return keys;
+    return data + (data.ends_with('/') ? "keys" : "/keys");
+}
 
 Command parse_command_line(int argc, const char* const* argv) {
     CLI::App app{"Tinsmith edits terrain meshes: it cuts polygons into them over HTTP."};
@@ -274,6 +342,8 @@ Command parse_command_line(int argc, const char* const* argv) {
     BackupConfig backup;
     const CLI::App* check_command = add_check(app, check);
     add_backup(app, backup);
+    KeyConfig key;
+    const CLI::App* key_command = add_key(app, key);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ConfigError& error) {
@@ -288,6 +358,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     if (serve_command->parsed()) return serve;
     if (integrate_command->parsed()) return integrate;
     if (check_command->parsed()) return check;
+    if (key_command->parsed()) return key;
     return backup;
 }
 

@@ -7,6 +7,7 @@
 
 #include "api/requests.hpp"
 #include "server/http_server.hpp"
+#include "server/keys/asker.hpp"
 #include "server/log.hpp"
 #include "server/policy.hpp"
 
@@ -20,6 +21,9 @@ struct ServeConfig {
     std::string demo_terrain;  ///< empty: the bundled one
     std::string viewer;        ///< folder of the built page; empty: the bundled one, if any
     std::string data;          ///< folder that sessions are stored in; empty: memory alone
+    std::string keys;          ///< file of API keys; empty: "keys" in the data folder, if there
+    bool first_key = false;    ///< make a key and print it where there is none
+    bool insecure = false;     ///< beyond this machine without keys
     Policy policy;
     LogLevel log_level = LogLevel::Info;
     LogFormat log_format = LogFormat::Auto;
@@ -50,12 +54,27 @@ struct CheckConfig {
     std::vector<api::NamedOption> terrain_options;
 };
 
+/// `tinsmith key`.
+struct KeyConfig {
+    enum class Action { Add, List, Renew, Remove };
+    Action action = Action::List;
+    std::string name;
+    std::string id;    ///< of a key that is added; empty: a new one
+    std::string keys;  ///< the file; empty: "keys" in the data folder
+    std::string data;
+    KeyQuotas quotas;
+};
+
+/// The file of API keys by what --keys and --data say; empty: none.
+std::string key_file_of(const std::string& keys, const std::string& data);
+
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitRefused = 1;  ///< the input or the surroundings do not allow it
 inline constexpr int kExitUsage = 2;    ///< the command line makes no sense
 
 /// What to do, or the exit code where that is done already (help, version, wrong usage).
-using Command = std::variant<int, ServeConfig, IntegrateConfig, CheckConfig, BackupConfig>;
+using Command =
+    std::variant<int, ServeConfig, IntegrateConfig, CheckConfig, BackupConfig, KeyConfig>;
 
 /// Reads command line, configuration file and environment, in this order of precedence. Writes
 /// help to standard output and complaints to standard error.

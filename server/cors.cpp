@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kExposed =
     "ETag, Location, Link, Idempotency-Replayed, X-Request-Id, traceparent, Retry-After, "
+    "WWW-Authenticate, "
     "Preference-Applied, Tinsmith-Max-Error, Tinsmith-Triangles, Tinsmith-Flipped-Triangles, "
     "Tinsmith-Collapsed-Triangles, "
     "Tinsmith-Position-Bits, Tinsmith-Origin";

@@ -26,7 +26,7 @@ std::string load_demo(Services& services, const std::string& path) {
     auto terrain = load_terrain(*bytes, terrain_format_of(*bytes), {}, services.read_limits());
     if (!terrain) return path + ": " + terrain.faults().front().detail;
     if (path == bundled_terrain()) terrain->about.name = "Jacksboro fault";
-    const auto added = services.sessions.add(std::move(terrain->tin), terrain->about, "demo");
+    const auto added = services.sessions.add(std::move(terrain->tin), terrain->about, {}, "demo");
     if (!std::holds_alternative<std::shared_ptr<Session>>(added)) {
         return path + ": does not fit into the limits max_sessions and max_memory_bytes";
     }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "server/keys/asker.hpp"
 #include "server/trace_context.hpp"
 
 namespace tinsmith::server {
@@ -27,6 +29,8 @@ struct Request {
     std::string remote_address;
     std::string id;                       ///< the request id that every answer carries
     std::optional<TraceContext> trace{};  ///< the sender's, with a span of our own as parent
+    Asker asker{};                        ///< who asks: the gate says it, never the client
+    std::shared_ptr<const void> pass{};   ///< held as long as the request counts as in flight
 
     /// The first header of that lower-case name.
     std::optional<std::string_view> header(std::string_view name) const {

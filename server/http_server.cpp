@@ -149,8 +149,9 @@ void write_response(const httplib::Request& raw, httplib::Response& out, Respons
 
 class HttpServer::Impl {
   public:
-    Impl(HttpOptions options, Answer answer, Finish finish, Told told)
+    Impl(HttpOptions options, Admit admit, Answer answer, Finish finish, Told told)
         : options_(std::move(options)),
+          admit_(std::move(admit)),
           answer_(std::move(answer)),
           finish_(std::move(finish)),
           told_(std::move(told)) {
@@ -253,15 +254,15 @@ class HttpServer::Impl {
         });
     }
 
-    /// What is wrong with the head, as an answer; nothing: go on.
-    std::optional<Response> refusal_of(const Head& head) const {
-        const Request& request = head.request;
+    /// What is wrong with the head or with who sends it, as an answer; nothing: go on.
+    std::optional<Response> refusal_of(Head& head, bool comes_again) const {
+        Request& request = head.request;
         auto problem = check_request_head(request, options_.limits);
         if (!problem && !head.ok) problem = {api::ProblemType::BadRequest, head.fault, {}};
-        if (!problem) return std::nullopt;
-        Response response = refuse(request, *problem);
-        response.with("X-Request-Id", request.id);
-        response.close = true;
+        auto response = problem ? refuse(request, *problem) : admit_(request, comes_again);
+        if (!response) return std::nullopt;
+        response->with("X-Request-Id", request.id);
+        response->close = problem || takes_body(request.method);  // what is not read stays there
         return response;
     }
 
@@ -269,7 +270,7 @@ class HttpServer::Impl {
     Handled begin(const httplib::Request& raw, httplib::Response& out) const {
         const auto start = Clock::now();
         Head head = head_of(raw);
-        if (auto refusal = refusal_of(head)) {
+        if (auto refusal = refusal_of(head, false)) {
             finish(raw, out, head.request, std::move(*refusal), start);
             return Handled::Handled;
         }
@@ -291,7 +292,7 @@ class HttpServer::Impl {
     /// A client that asks before it sends is refused before it has sent.
     int invite_body(const httplib::Request& raw, httplib::Response& out) const {
         Head head = head_of(raw);
-        auto refusal = refusal_of(head);
+        auto refusal = refusal_of(head, true);
         if (!refusal) return 100;
         finish(raw, out, head.request, std::move(*refusal), Clock::now());
         return out.status;
@@ -338,6 +339,7 @@ class HttpServer::Impl {
     /// For what the library refused by itself: unreadable request lines, headers that are too
     /// long, failures inside it.
     void answer_for_library(const httplib::Request& raw, httplib::Response& out) const {
+        pending() = {};
         Request request;
         request.id = random_hex(8);
         request.method = raw.method.empty() ? "-" : raw.method;
@@ -358,6 +360,7 @@ class HttpServer::Impl {
     }
 
     const HttpOptions options_;
+    const Admit admit_;
     const Answer answer_;
     const Finish finish_;
     const Told told_;
@@ -368,9 +371,9 @@ class HttpServer::Impl {
     httplib::Server server_;
 };
 
-HttpServer::HttpServer(HttpOptions options, Answer answer, Finish finish, Told told)
-    : impl_(std::make_unique<Impl>(std::move(options), std::move(answer), std::move(finish),
-                                   std::move(told))) {}
+HttpServer::HttpServer(HttpOptions options, Admit admit, Answer answer, Finish finish, Told told)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(admit), std::move(answer),
+                                   std::move(finish), std::move(told))) {}
 
 HttpServer::~HttpServer() = default;
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/http_message.hpp"
@@ -31,13 +32,17 @@ struct HttpOptions {
 /// service while all threads are held by slow clients; a proxy in front gives these.
 class HttpServer {
   public:
+    /// Who may ask, by the head: nothing, and perhaps a word on who it is, or what is answered
+    /// instead before the body is read. Where `comes_again` the client only wants to know whether
+    /// to send its body.
+    using Admit = std::function<std::optional<Response>(Request& head, bool comes_again)>;
     using Answer = std::function<Response(const Request&)>;
     using Finish = std::function<void(const Request&, Response&)>;
     using Told = std::function<void(const Request&, const Response&, double seconds)>;
 
     /// `finish` has the last word on every answer, those that no handler gave included; `told`
     /// hears of each, with the time since its head was read, and must not throw.
-    HttpServer(HttpOptions options, Answer answer, Finish finish, Told told);
+    HttpServer(HttpOptions options, Admit admit, Answer answer, Finish finish, Told told);
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;

@@ -96,7 +96,9 @@ std::optional<api::JobView> Jobs::add(Request request, Task task) {
     job->id = job->place.begin();
     job->view.method = request.method;
     job->view.path = request.path;
+    job->owner = request.asker.id;
     job->request = std::move(request);
+    job->request.pass.reset();  // a job is no request in flight
     job->task = std::move(task);
     job->bytes = bytes;
     api::JobView view = view_of(*job);
@@ -218,18 +220,25 @@ void Jobs::drop(JobMap::iterator job) noexcept {
     jobs_.erase(job);
 }
 
-std::optional<api::JobView> Jobs::view(const std::string& id) {
+/// Requires: the lock.
+Jobs::JobMap::iterator Jobs::find(const std::string& id, const Asker& asker) {
+    const auto found = jobs_.find(id);
+    return found != jobs_.end() && asker.may_see(found->second->owner) ? found : jobs_.end();
+}
+
+std::optional<api::JobView> Jobs::view(const std::string& id, const Asker& asker) {
     const std::lock_guard lock(mutex_);
     drop_old();
-    const auto found = jobs_.find(id);
+    const auto found = find(id, asker);
     return found == jobs_.end() ? std::nullopt : std::optional(view_of(*found->second));
 }
 
-Jobs::Page Jobs::after(const std::string& id, std::size_t limit) {
+Jobs::Page Jobs::after(const std::string& id, std::size_t limit, const Asker& asker) {
     const std::lock_guard lock(mutex_);
     drop_old();
     Page page;
     for (auto job = jobs_.upper_bound(id); job != jobs_.end(); ++job) {
+        if (!asker.may_see(job->second->owner)) continue;
         page.more = page.jobs.size() == limit;
         if (page.more) break;
         page.jobs.push_back(view_of(*job->second));
@@ -242,10 +251,10 @@ Jobs::Counts Jobs::counts() {
     return {queue_.size(), jobs_.size() - ended_.size() - queue_.size()};
 }
 
-Jobs::Result Jobs::result(const std::string& id) {
+Jobs::Result Jobs::result(const std::string& id, const Asker& asker) {
     const std::lock_guard lock(mutex_);
     drop_old();
-    const auto found = jobs_.find(id);
+    const auto found = find(id, asker);
     if (found == jobs_.end()) return NoSuchJob{};
     const Job& job = *found->second;
     if (!api::has_ended(job.view.state)) return Unfinished{};
@@ -253,10 +262,11 @@ Jobs::Result Jobs::result(const std::string& id) {
     return job.answer;
 }
 
-std::optional<api::JobView> Jobs::remove(const std::string& id, std::chrono::milliseconds longest) {
+std::optional<api::JobView> Jobs::remove(const std::string& id, std::chrono::milliseconds longest,
+                                         const Asker& asker) {
     std::unique_lock lock(mutex_);
     drop_old();
-    const auto found = jobs_.find(id);
+    const auto found = find(id, asker);
     if (found == jobs_.end()) return std::nullopt;
     const JobPtr job = found->second;
     if (api::has_ended(job->view.state)) {

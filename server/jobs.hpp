@@ -25,10 +25,11 @@ namespace tinsmith::server {
 /// Requests that are answered later: done one after the other on a few threads of their own, their
 /// answers kept for a while.
 ///
-/// Laws: a job's state goes forward only, from queued over running to one of the three ends, and
-/// says what became of the request: `stopped` means that nothing came of it. Jobs that have not
-/// ended are never dropped; of those that have, the one that ended first goes first, when there are
-/// too many, too many bytes, or it is too old. Threads are started by the first job.
+/// Laws: a job is its asker's: for others it is not there; its state goes forward only, from queued
+/// over running to one of the three ends, and says what became of the request: `stopped` means that
+/// nothing came of it. Jobs that have not ended are never dropped; of those that have, the one that
+/// ended first goes first, when there are too many, too many bytes, or it is too old. Threads are
+/// started by the first job.
 class Jobs {
   public:
     using Time = std::chrono::steady_clock::time_point;
@@ -63,14 +64,14 @@ class Jobs {
     /// Whether there can ever be room for it.
     bool is_small_enough(const Request& request) const;
 
-    std::optional<api::JobView> view(const std::string& id);
+    std::optional<api::JobView> view(const std::string& id, const Asker& asker = {});
 
     struct Page {
         std::vector<api::JobView> jobs;
         bool more = false;
     };
     /// In the order in which they came, those after the one of that id, which may be gone.
-    Page after(const std::string& id, std::size_t limit);
+    Page after(const std::string& id, std::size_t limit, const Asker& asker = {});
 
     struct Counts {
         std::size_t queued = 0;
@@ -82,11 +83,12 @@ class Jobs {
     struct Unfinished {};
     struct NotKept {};  ///< it ended, but its answer was too large
     using Result = std::variant<Response, NoSuchJob, Unfinished, NotKept>;
-    Result result(const std::string& id);
+    Result result(const std::string& id, const Asker& asker = {});
 
     /// Drops a job that has ended; tells any other to stop and waits, for so long at most, until it
     /// has. What it was or is then; it may have been done before it could be stopped.
-    std::optional<api::JobView> remove(const std::string& id, std::chrono::milliseconds longest);
+    std::optional<api::JobView> remove(const std::string& id, std::chrono::milliseconds longest,
+                                       const Asker& asker = {});
 
     /// Tells all to stop and takes no more on. Waits for none.
     void stop();
@@ -96,6 +98,7 @@ class Jobs {
   private:
     struct Job {
         api::JobView view;  ///< but for its progress, which the work has
+        std::string owner;  ///< the key that asked for it; empty: none did
         Work work;
         Request request;
         Task task;
@@ -110,6 +113,8 @@ class Jobs {
     using JobMap = std::map<std::string, JobPtr>;
 
     static api::JobView view_of(const Job& job);
+    /// The end where it is not there for them.
+    JobMap::iterator find(const std::string& id, const Asker& asker);
     void start_thread();
     void run_jobs();
     void end(Job& job, Response answer) noexcept;

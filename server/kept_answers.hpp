@@ -39,7 +39,7 @@ class KeptAnswers {
         std::chrono::seconds age = std::chrono::hours(24);
     };
 
-    /// A session's birth, or empty for what belongs to none; and the client's key.
+    /// A session's birth, or of what belongs to none the API key, or empty; and the client's key.
     using Name = std::pair<std::string, std::string>;
 
     struct GoOn {};          ///< the first of its kind: do it, then `keep` or `drop`

@@ -53,9 +53,10 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 
 LogLevel level_of(const Request& request, const Response& response) {
     static constexpr std::array<std::string_view, 3> kProbes{"/healthz", "/readyz", "/metrics"};
+    static constexpr int kRefusals = 400;
     static constexpr int kServerErrors = 500;
     if (std::find(kProbes.begin(), kProbes.end(), request.path) != kProbes.end() &&
-        (response.status < kServerErrors || request.path == "/readyz")) {
+        (response.status < kRefusals || request.path == "/readyz")) {
         return LogLevel::Debug;
     }
     if (response.status == api::problem_status(api::ProblemType::Internal)) return LogLevel::Error;
@@ -94,6 +95,7 @@ void log_request(const Request& request, const Response& response, double millis
         {"status", response.status},       {"bytes", bytes_sent(request, response)},
         {"bytes_in", request.body.size()}, {"ms", milliseconds},
         {"request", request.id},           {"client", request.remote_address}};
+    if (!request.asker.name.empty()) fields.emplace_back("key", request.asker.name);
     if (!response.problem.empty()) fields.emplace_back("problem", response.problem);
     if (request.trace) {
         fields.emplace_back("trace", request.trace->trace_id);

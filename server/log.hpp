@@ -30,9 +30,9 @@ void log_event(LogLevel level, std::string_view event, std::string_view message,
                std::initializer_list<LogField> fields = {});
 
 /// One line: method, path, route, status, bytes both ways, milliseconds, request id, client, the
-/// word of the problem where it was refused, and the trace where it belongs to one. What failed in
-/// the server is an error, what it had no room or time for a warning; what monitors ask for all day
-/// is told at level debug.
+/// name of the API key (never the key), the word of the problem where it was refused, and the trace
+/// where it belongs to one. What failed in the server is an error, what it had no room or time for
+/// a warning; what monitors ask for all day is told at level debug.
 void log_request(const Request& request, const Response& response, double milliseconds);
 
 /// Bytes of the body as it goes out: none to HEAD.

@@ -17,6 +17,7 @@ struct Run {
     int operator()(const IntegrateConfig& config) const { return run_integrate(config); }
     int operator()(const CheckConfig& config) const { return run_check(config); }
     int operator()(const BackupConfig& config) const { return run_backup(config); }
+    int operator()(const KeyConfig& config) const { return run_key(config); }
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace tinsmith::server {
 struct RequestKey {
     std::string key;
     std::string print;
-    std::string scope;  ///< the birth of the session that was asked, or empty
+    std::string scope;  ///< the birth of the session that was asked, or the API key, or empty
 };
 
 /// Of the request that this thread works on: what it changes is kept with its key.

@@ -20,6 +20,7 @@ std::vector<std::string> SessionStore::take_up() {
         if (stored.facts.id.empty()) continue;  // not even its name can be read
         auto entry = std::make_shared<Entry>();
         entry->facts = std::move(stored.facts);
+        entry->owner = std::move(stored.owner);
         entry->counts = stored.counts;
         entry->damage = std::move(stored.damage);
         entry->used = stored.used;
@@ -87,13 +88,15 @@ bool SessionStore::make_room(std::size_t bytes, Freed& freed) {
     return sum <= most - bytes;
 }
 
-std::optional<api::SessionView> SessionStore::remove_damaged(const std::string& id) {
+std::optional<api::SessionView> SessionStore::remove_damaged(const std::string& id,
+                                                             const Asker& asker) {
     EntryPtr going;
     api::SessionView last;
     {
         const std::unique_lock lock(mutex_);
         const auto found = entries_.find(id);
         if (found == entries_.end() || found->second->damage.empty()) return std::nullopt;
+        if (!asker.may_see(found->second->owner)) return std::nullopt;
         last = view_of_entry(*found->second);
         going = hold_back(found);
     }
@@ -155,7 +158,7 @@ void SessionStore::load_all(const std::function<bool()>& go_on) {
         if (sum > limits_.max_memory_bytes) continue;
         const std::int64_t before = -used;
         try {
-            find(id);
+            find(id, {});
         } catch (const SessionIsDamaged& damaged) {
             log_event(LogLevel::Error, "session_damaged",
                       "session \"" + id + "\" is out of service: " + damaged.what());

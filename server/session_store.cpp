@@ -10,7 +10,7 @@
 
 namespace tinsmith::server {
 
-SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
+SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about, const Asker& asker,
                                       std::optional<std::string> id) {
     SessionFacts facts{id ? std::move(*id) : random_uuid(),
                        random_hex(8),
@@ -20,17 +20,18 @@ SessionStore::Added SessionStore::add(core::Tin tin, const api::Terrain& about,
                        about.repairs,
                        about.notes};
     const HistoryLimits history{limits_.max_history, limits_.max_history_bytes};
-    return keep(std::make_shared<Session>(std::move(facts), std::move(tin), history));
+    return keep(std::make_shared<Session>(std::move(facts), std::move(tin), history), asker);
 }
 
-SessionStore::Added SessionStore::fork(const Session& session) {
-    return keep(session.fork(random_uuid(), random_hex(8)));
+SessionStore::Added SessionStore::fork(const Session& session, const Asker& asker) {
+    return keep(session.fork(random_uuid(), random_hex(8)), asker);
 }
 
-SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
+SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session, const Asker& asker) {
     const std::string& id = session->facts().id;
     const auto entry = std::make_shared<Entry>();
     entry->facts = session->facts();
+    entry->owner = asker.id;
     entry->counts = session->counts();
     entry->is_being_made = true;
     touch(*entry);
@@ -38,6 +39,7 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
     {
         const std::unique_lock lock(mutex_);
         if (entries_.contains(id)) return StoreRefusal::IdIsTaken;
+        if (const auto quota = refusal_of_quota(asker, entry->counts.memory_bytes)) return *quota;
         if (entries_.size() >= limits_.max_sessions) return StoreRefusal::TooMany;
         if (!make_room(entry->counts.memory_bytes, freed)) return StoreRefusal::NoMemory;
         entries_.emplace(id, entry);
@@ -49,7 +51,7 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
                 let_go(id);
                 return StoreRefusal::NoMemory;
             }
-            vault_->create(*session);
+            vault_->create(*session, asker.id);
         }
     } catch (...) {
         let_go(id);
@@ -61,12 +63,24 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session) {
     return session;
 }
 
-std::shared_ptr<Session> SessionStore::find(const std::string& id) {
+std::optional<StoreRefusal> SessionStore::refusal_of_quota(const Asker& asker,
+                                                           std::size_t bytes) const {
+    const auto& [max_sessions, max_memory, requests, rate] = asker.quotas;
+    if (!max_sessions && !max_memory) return std::nullopt;
+    const KeyShare share = share_now(asker.id);
+    if (max_sessions && share.sessions >= *max_sessions) return StoreRefusal::TooManyOfKey;
+    const bool has_room = !max_memory || (share.memory_bytes <= *max_memory &&
+                                          bytes <= *max_memory - share.memory_bytes);
+    return has_room ? std::nullopt : std::optional(StoreRefusal::NoMemoryOfKey);
+}
+
+std::shared_ptr<Session> SessionStore::find(const std::string& id, const Asker& asker) {
     EntryPtr entry;
     {
         const std::shared_lock lock(mutex_);
         const auto found = entries_.find(id);
         if (found == entries_.end() || found->second->is_being_made) return nullptr;
+        if (!asker.may_see(found->second->owner)) return nullptr;
         entry = found->second;
         touch(*entry);
         if (entry->session && !entry->session->is_lost()) return entry->session;
@@ -79,11 +93,12 @@ bool SessionStore::contains(const std::string& id) const {
     return entries_.contains(id);
 }
 
-SessionStore::Page SessionStore::page(const std::string& after, std::size_t limit) const {
+SessionStore::Page SessionStore::page(const std::string& after, std::size_t limit,
+                                      const Asker& asker) const {
     const std::shared_lock lock(mutex_);
     Page page;
     for (auto entry = entries_.upper_bound(after); entry != entries_.end(); ++entry) {
-        if (entry->second->is_being_made) continue;
+        if (entry->second->is_being_made || !asker.may_see(entry->second->owner)) continue;
         page.more = page.views.size() == limit;
         if (page.more) break;
         page.views.push_back(view_of_entry(*entry->second));
@@ -159,6 +174,22 @@ bool SessionStore::is_kept(const Session& session) const {
 std::size_t SessionStore::size() const {
     const std::shared_lock lock(mutex_);
     return entries_.size();
+}
+
+KeyShare SessionStore::share_of(const std::string& owner) const {
+    const std::shared_lock lock(mutex_);
+    return share_now(owner);
+}
+
+KeyShare SessionStore::share_now(const std::string& owner) const {
+    KeyShare share;
+    for (const auto& [id, entry] : entries_) {
+        if (entry->owner != owner) continue;
+        ++share.sessions;
+        share.memory_bytes +=
+            (entry->session ? entry->session->counts() : entry->counts).memory_bytes;
+    }
+    return share;
 }
 
 std::size_t SessionStore::memory_bytes() const {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "api/terrain.hpp"
+#include "server/keys/asker.hpp"
 #include "server/limits.hpp"
 #include "server/session.hpp"
 #include "server/session_vault.hpp"
@@ -26,9 +27,11 @@ namespace tinsmith::server {
 
 /// Why a session could not be kept.
 enum class StoreRefusal {
-    TooMany,    ///< Limits::max_sessions are there already
-    NoMemory,   ///< Limits::max_memory_bytes would be passed
-    IdIsTaken,  ///< the id of choice exists
+    TooMany,        ///< Limits::max_sessions are there already
+    NoMemory,       ///< Limits::max_memory_bytes would be passed
+    IdIsTaken,      ///< the id of choice exists, whoever sees it
+    TooManyOfKey,   ///< KeyQuotas::max_sessions of the asker are there already
+    NoMemoryOfKey,  ///< KeyQuotas::max_memory_bytes would be passed
 };
 
 /// Of all sessions together, at about the same time.
@@ -38,6 +41,12 @@ struct SessionTotals {
     std::size_t out_of_service = 0;
     std::size_t triangles = 0;
     std::size_t memory_bytes = 0;  ///< with what is borrowed
+};
+
+/// What one key has.
+struct KeyShare {
+    std::size_t sessions = 0;
+    std::size_t memory_bytes = 0;  ///< of those in memory and of those that are not
 };
 
 enum class Removal { Done, Gone, OtherVersion };
@@ -64,6 +73,9 @@ class BorrowedMemory {
 /// Laws, with a vault: a session that is told of is stored; one that nobody holds leaves memory
 /// where another needs it, the one used longest ago first, and comes back with the next request as
 /// it was; one that cannot be loaded is out of service until it is removed.
+///
+/// A session is its maker's (Asker::may_see): for other keys it is not there, but that its id is
+/// taken.
 class SessionStore {
   public:
     /// No vault: sessions end with the process. The vault outlives the store.
@@ -79,16 +91,18 @@ class SessionStore {
 
     using Added = std::variant<std::shared_ptr<Session>, StoreRefusal>;
 
-    /// Keeps a mesh as a new session. No id: a random one of 128 bits. Throws StorageFault.
-    Added add(core::Tin tin, const api::Terrain& about, std::optional<std::string> id = {});
+    /// Keeps a mesh as a new session of the asker. No id: a random one of 128 bits. Throws
+    /// StorageFault.
+    Added add(core::Tin tin, const api::Terrain& about, const Asker& asker,
+              std::optional<std::string> id = {});
 
-    /// Keeps a copy of a session as a new one with a random id. Throws StorageFault.
-    Added fork(const Session& session);
+    /// Keeps a copy of a session as a new one of the asker, with a random id. Throws StorageFault.
+    Added fork(const Session& session, const Asker& asker);
 
-    /// Null where there is none. Throws SessionIsDamaged, StorageFault, and std::bad_alloc where
-    /// there is no room to load it.
-    std::shared_ptr<Session> find(const std::string& id);
-    /// Whether there is one, loaded or not.
+    /// Null where there is none that the asker may see. Throws SessionIsDamaged, StorageFault, and
+    /// std::bad_alloc where there is no room to load it.
+    std::shared_ptr<Session> find(const std::string& id, const Asker& asker);
+    /// Whether there is one, loaded or not, whoever sees it.
     bool contains(const std::string& id) const;
 
     /// At most `limit` sessions in the order of their ids, those after one. Loads nothing.
@@ -96,7 +110,7 @@ class SessionStore {
         std::vector<api::SessionView> views;
         bool more = false;
     };
-    Page page(const std::string& after, std::size_t limit) const;
+    Page page(const std::string& after, std::size_t limit, const Asker& asker) const;
     /// The session's, with when it ends if nobody asks for it.
     api::SessionView view(const Session& session) const;
 
@@ -104,8 +118,9 @@ class SessionStore {
     /// than that. An edit that finishes later finds itself `is_kept` no more: of an edit and a
     /// removal at the same time each sees the other or comes after it. Throws StorageFault.
     Removal remove(const Session& session, std::optional<std::uint64_t> expected = {});
-    /// Ends a session that is out of service; nothing where it is not. Throws StorageFault.
-    std::optional<api::SessionView> remove_damaged(const std::string& id);
+    /// Ends a session that is out of service; nothing where it is not, or not the asker's to see.
+    /// Throws StorageFault.
+    std::optional<api::SessionView> remove_damaged(const std::string& id, const Asker& asker);
     /// Ends those that nobody asked for since then. Returns their births. What cannot be ended is
     /// logged, and stays.
     std::vector<std::string> remove_unused_since(std::int64_t unix_seconds);
@@ -114,6 +129,8 @@ class SessionStore {
     bool is_kept(const Session& session) const;
 
     std::size_t size() const;
+    /// Of the key of that id. Cost: the sessions.
+    KeyShare share_of(const std::string& owner) const;
 
     /// Of all sessions in memory together and of what is borrowed. Waits for no edit.
     std::size_t memory_bytes() const;
@@ -139,6 +156,7 @@ class SessionStore {
   private:
     struct Entry {
         SessionFacts facts;
+        std::string owner;                 ///< id of the key that made it; empty: none did
         SessionCounts counts;              ///< of one that is not in memory
         std::shared_ptr<Session> session;  ///< null: not in memory
         std::string damage;                ///< not empty: out of service
@@ -150,7 +168,10 @@ class SessionStore {
     using Entries = std::map<std::string, EntryPtr>;
     using Freed = std::vector<std::shared_ptr<Session>>;  ///< to be freed outside of the lock
 
-    Added keep(std::shared_ptr<Session> session);
+    Added keep(std::shared_ptr<Session> session, const Asker& asker);
+    /// Requires: the lock.
+    KeyShare share_now(const std::string& owner) const;
+    std::optional<StoreRefusal> refusal_of_quota(const Asker& asker, std::size_t bytes) const;
     std::shared_ptr<Session> load(Entry& entry);
     bool make_room(std::size_t bytes, Freed& freed);
     std::size_t sum_of_memory() const;

@@ -46,6 +46,9 @@ RequestKey key_of(std::string_view stored, std::string print) {
             std::string(stored.substr(0, end))};
 }
 
+/// No key's id. What is damaged so that nobody knows whose it was is shown to no key.
+constexpr const char* kNobody = "?";
+
 /// Bytes of whole answers that go with one snapshot; of more, what is told of the changes.
 constexpr std::size_t kAnswersOfASnapshot = std::size_t{16} << 20;
 
@@ -175,9 +178,10 @@ std::vector<VaultEntry> SessionVault::entries() const {
         entry.made_by = key_of(row.session.key, std::move(row.session.print));
         entry.tail = row.version - row.snapshot_version;
         entry.damage = std::move(row.damage);
-        auto facts = unpack_facts(row.session.facts);
+        auto facts = unpack_facts(row.session.facts, entry.owner);
         auto counts = unpack_counts(row.view);
         if (facts) entry.facts = std::move(*facts);
+        if (!facts) entry.owner = kNobody;
         if (counts) entry.counts = *counts;
         entry.facts.id = std::move(row.session.id);
         entry.facts.birth = std::move(row.session.birth);
@@ -192,14 +196,14 @@ std::shared_ptr<SessionVault::Log> SessionVault::log_of(const SessionFacts& fact
     return std::make_shared<Log>(*this, facts);
 }
 
-void SessionVault::create(Session& session) {
+void SessionVault::create(Session& session, const std::string& owner) {
     const SessionFacts& facts = session.facts();
     const auto log = log_of(facts);
     session.start_log(log);
     const SessionParts parts = session.parts();
     const RequestKey& key = current_request_key();
     require(journal_->create(
-        {facts.birth, facts.id, pack(facts), stored_key(key), key.print, unix_seconds()},
+        {facts.birth, facts.id, pack(facts, owner), stored_key(key), key.print, unix_seconds()},
         head_of(parts, session.counts()), pack(parts)));
 }
 

@@ -30,11 +30,12 @@ class SessionIsDamaged : public std::runtime_error {
 /// A session as the vault knows it without loading it.
 struct VaultEntry {
     SessionFacts facts;
+    std::string owner;  ///< id of the key that made it; empty: none did
     SessionCounts counts;
     std::int64_t used = 0;   ///< Unix seconds
     std::uint64_t tail = 0;  ///< changes since the snapshot
-    RequestKey made_by;     ///< of the request that made it
-    std::string damage;     ///< not empty: out of service, and why; then the rest may be too
+    RequestKey made_by;      ///< of the request that made it
+    std::string damage;      ///< not empty: out of service, and why; then the rest may be too
 };
 
 /// A change that came with an Idempotency-Key and is not in a snapshot yet.
@@ -74,9 +75,10 @@ class SessionVault {
     std::vector<VaultEntry> entries() const;
 
     /// Stores a new session and has it log its changes here from then on, with the key of the
-    /// request that this thread works on. Requires: nobody else has the session yet. Throws
-    /// StorageFault. Memory: as much as the session has.
-    void create(Session& session);
+    /// request that this thread works on. `owner`: the id of the API key that makes it, or empty.
+    /// Requires: nobody else has the session yet. Throws StorageFault. Memory: as much as the
+    /// session has.
+    void create(Session& session, const std::string& owner = {});
     /// Throws SessionIsDamaged, SessionIsGone, StorageFault. Cost: the snapshot, and what its
     /// changes since took.
     LoadedSession load(const std::string& birth);

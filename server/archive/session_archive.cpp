@@ -59,6 +59,23 @@ std::optional<SessionFacts> unpack_facts(std::string_view bytes) {
     return unpacked<SessionFacts>(bytes);
 }
 
+std::string pack(const SessionFacts& facts, const std::string& owner) {
+    Packer pack;
+    pack(facts);
+    if (!owner.empty()) pack(owner);
+    return pack.take();
+}
+std::optional<SessionFacts> unpack_facts(std::string_view bytes, std::string& owner) {
+    owner.clear();
+    if (auto facts = unpack_facts(bytes)) return facts;
+    SessionFacts facts;
+    Unpacker unpack(bytes);
+    unpack(facts, owner);
+    if (unpack.done() && !owner.empty()) return facts;
+    owner.clear();
+    return std::nullopt;
+}
+
 std::string pack(const SessionCounts& counts) {
     return packed(counts);
 }

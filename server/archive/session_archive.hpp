@@ -30,6 +30,12 @@ std::optional<ChangeAsked> unpack_asked(std::string_view bytes);
 std::string pack(const SessionFacts& facts);
 std::optional<SessionFacts> unpack_facts(std::string_view bytes);
 
+/// With the id of the API key that made the session. Where none did the bytes are those of the
+/// facts alone, as they were before there were keys.
+std::string pack(const SessionFacts& facts, const std::string& owner);
+/// `owner` becomes what was packed with them, empty where nothing was.
+std::optional<SessionFacts> unpack_facts(std::string_view bytes, std::string& owner);
+
 std::string pack(const SessionCounts& counts);
 std::optional<SessionCounts> unpack_counts(std::string_view bytes);
 

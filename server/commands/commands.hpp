@@ -11,5 +11,6 @@ int run_serve(const ServeConfig& config);
 int run_integrate(const IntegrateConfig& config);
 int run_check(const CheckConfig& config);
 int run_backup(const BackupConfig& config);
+int run_key(const KeyConfig& config);
 
 }  // namespace tinsmith::server

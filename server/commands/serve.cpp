@@ -6,10 +6,12 @@
 
 #include "server/answer_finish.hpp"
 #include "server/commands/commands.hpp"
+#include "server/commands/serving_keys.hpp"
 #include "server/commands/stopping.hpp"
 #include "server/demo.hpp"
 #include "server/file_io.hpp"
 #include "server/http_server.hpp"
+#include "server/keys/gate.hpp"
 #include "server/log.hpp"
 #include "server/router.hpp"
 #include "server/routes/page_routes.hpp"
@@ -30,10 +32,6 @@ constexpr std::chrono::seconds kForAnswers{1};
 
 Clock::duration seconds_of(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
-bool is_loopback(const std::string& host) {
-    return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
 std::string url_of(const std::string& host, int port) {
@@ -140,7 +138,7 @@ class Startup {
 /// Serves until a signal comes or the start fails, then drains. An exit code. Where the time is up
 /// the watchdog ends the process.
 int serve_until_stopped(HttpServer& server, Services& services, const ServeConfig& config, int port,
-                        const StopSignals& signals, Watchdog& watchdog) {
+                        const StopSignals& signals, Watchdog& watchdog, ServingKeys& keys) {
     auto served = std::async(std::launch::async, [&server] {
         const bool fine = server.serve();
         if (!fine) StopSignals::wake();
@@ -150,7 +148,7 @@ int serve_until_stopped(HttpServer& server, Services& services, const ServeConfi
     log_event(LogLevel::Info, "listening", "listening on " + url + ", not ready yet",
               {{"url", url}});
     Startup startup(services, config, port);
-    signals.wait();
+    signals.wait([&keys] { keys.read_again(); });
     signals.release();
     const bool has_failed = startup.has_failed();
     const auto delay = has_failed ? Clock::duration(0) : seconds_of(config.drain_delay);
@@ -192,9 +190,12 @@ std::variant<std::unique_ptr<SessionVault>, std::string> open_vault(const ServeC
 }
 
 /// From the sessions to their end.
-int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watchdog) {
+int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watchdog,
+          ServingKeys& keys) {
     auto vault = open_vault(config);
     if (const auto* why = std::get_if<std::string>(&vault)) return fail("--data: " + *why);
+    if (const std::string why = keys.start(); !why.empty()) return fail(why);
+    Gate gate(keys.ring());
     Services services(config.http.limits, config.policy, std::get<0>(std::move(vault)));
     services.readiness.begin();
     SessionKeeper keeper(services);
@@ -214,6 +215,9 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     const Router page_router(make_page_routes(services), &services.metrics);
     HttpServer server(
         config.http,
+        [&gate](Request& head, bool comes_again) {
+            return comes_again ? gate.would_refuse(head) : gate.admit(head);
+        },
         [&](const Request& request) {
             const Metrics::InFlight one(services.metrics);
             return request.path.starts_with(kPageFolder) ? page_router.handle(request)
@@ -230,28 +234,23 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     std::string error;
     const int port = server.bind(error);
     if (port == 0) return fail(error);
-    if (!is_loopback(config.http.host)) {
-        log_event(LogLevel::Warning, "exposed",
-                  "LISTENING BEYOND THIS MACHINE (" + config.http.host +
-                      ") WITHOUT KEYS: everyone who reaches the port can read, change and delete "
-                      "every session. Put a proxy with access control in front.");
-    }
     const std::string viewer = config.viewer.empty() ? bundled_page() : config.viewer;
     if (!viewer.empty()) {
         services.page = PageFiles::read(viewer, error);
         if (!services.page.is_there()) return fail("--viewer: " + error);
     }
-    return serve_until_stopped(server, services, config, port, signals, watchdog);
+    return serve_until_stopped(server, services, config, port, signals, watchdog, keys);
 }
 
 }  // namespace
 
 int run_serve(const ServeConfig& config) {
-    const StopSignals signals;  // before the first thread, which inherits the mask
+    ServingKeys keys(config);
+    const StopSignals signals(keys.has_file());  // before the first thread: it inherits the mask
     set_log_format(config.log_format);
     set_log_level(config.log_level);
     Watchdog watchdog;  // outlives all that may hold up the end
-    const int code = serve(config, signals, watchdog);
+    const int code = serve(config, signals, watchdog, keys);
     if (code == kExitOk) log_event(LogLevel::Info, "stopped", "stopped");
     return code;
 }

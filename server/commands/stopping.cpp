@@ -28,20 +28,25 @@ void tell_forced() {
 
 }  // namespace
 
-StopSignals::StopSignals() {
+StopSignals::StopSignals(bool hangup) {
     sigemptyset(&stopping_);
     sigaddset(&stopping_, SIGINT);
     sigaddset(&stopping_, SIGTERM);
     all_ = stopping_;
     sigaddset(&all_, SIGUSR1);
+    if (hangup) sigaddset(&all_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &all_, nullptr);
     // A file that may not grow (ulimit -f) is an error of the write, as a full disk is.
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void StopSignals::wait() const {
-    int signal = 0;
-    sigwait(&all_, &signal);
+void StopSignals::wait(const std::function<void()>& on_hangup) const {
+    for (;;) {
+        int signal = 0;
+        sigwait(&all_, &signal);
+        if (signal != SIGHUP) return;
+        if (on_hangup) on_hangup();
+    }
 }
 
 void StopSignals::wake() {

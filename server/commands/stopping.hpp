@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -14,13 +15,14 @@ namespace tinsmith::server {
 inline constexpr std::chrono::seconds kLastWait{5};
 
 /// SIGINT and SIGTERM, taken off every thread that is started later so that only `wait` meets
-/// them: no code of ours runs in a signal handler. SIGXFSZ is ignored, and SIGUSR1 is ours.
+/// them: no code of ours runs in a signal handler. SIGXFSZ is ignored, and SIGUSR1 is ours. With
+/// `hangup` SIGHUP is taken off them too, and means that something is to be read again.
 class StopSignals {
   public:
-    StopSignals();
+    explicit StopSignals(bool hangup = false);
 
-    /// Until one of them comes, or `wake`.
-    void wait() const;
+    /// Until one of them comes, or `wake`. Calls `on_hangup` here at each SIGHUP.
+    void wait(const std::function<void()>& on_hangup = {}) const;
     /// Ends the wait, or nothing where it has ended. From any thread.
     static void wake();
 

@@ -43,6 +43,14 @@ std::string print_of(const Request& request) {
     return sha256_of(parts);
 }
 
+/// Of two API keys neither gets the other's answers, nor pushes them out of what belongs to no
+/// session. There are no spaces in Idempotency-Keys.
+KeptAnswers::Name name_of(const Session* session, const Asker& asker, const std::string& key) {
+    if (asker.id.empty()) return {session ? session->facts().birth : std::string(), key};
+    if (session == nullptr) return {"key " + asker.id, key};
+    return {session->facts().birth, asker.id + ' ' + key};
+}
+
 bool is_worth_keeping(int status) {
     static constexpr std::array kOfTheMoment{
         ProblemType::NotAcceptable, ProblemType::VersionMismatch, ProblemType::UnsupportedMediaType,
@@ -118,10 +126,10 @@ Handler keyed(Services& services, Handler handler) {
                           "Idempotency-Key takes 1 to 255 printable characters without spaces, "
                           "commas, quotes and backslashes; a UUID is a good one.");
         }
-        const auto session = arguments.empty() ? nullptr : services.sessions.find(arguments[0]);
+        const auto session =
+            arguments.empty() ? nullptr : services.sessions.find(arguments[0], request.asker);
         if (!arguments.empty() && !session) return handler(request, arguments);
-        const KeptAnswers::Name name{session ? session->facts().birth : std::string(),
-                                     std::move(*key)};
+        const KeptAnswers::Name name = name_of(session.get(), request.asker, *key);
         std::string print = print_of(request);
         auto verdict = services.answers.begin(name, print);
         if (std::holds_alternative<Response>(verdict)) services.metrics.answer_replayed();

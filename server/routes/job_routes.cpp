@@ -57,7 +57,7 @@ Response list_jobs(Services& services, const Request& request, const PathArgumen
     const auto page = require_page(request, kCursorKind);
     if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
     const auto& [limit, after] = std::get<0>(page);
-    const Jobs::Page jobs = services.jobs.after(after, limit);
+    const Jobs::Page jobs = services.jobs.after(after, limit, request.asker);
     Response response = ok(kJson, api::write_jobs(jobs.jobs));
     if (jobs.more) {
         response.with("Link", next_link(request, kCursorKind, limit, jobs.jobs.back().id));
@@ -66,13 +66,13 @@ Response list_jobs(Services& services, const Request& request, const PathArgumen
 }
 
 Response get_job(Services& services, const Request& request, const PathArguments& arguments) {
-    const auto job = services.jobs.view(arguments[0]);
+    const auto job = services.jobs.view(arguments[0], request.asker);
     return job ? tell(*job) : no_such_job(request, arguments[0]);
 }
 
 Response get_job_result(Services& services, const Request& request,
                         const PathArguments& arguments) {
-    auto result = services.jobs.result(arguments[0]);
+    auto result = services.jobs.result(arguments[0], request.asker);
     return std::visit(Told{request, arguments[0]}, result);
 }
 
@@ -81,7 +81,7 @@ Response delete_job(Services& services, const Request& request, const PathArgume
         return refuse(request, api::ProblemType::BadRequest,
                       "There is no body here: leave it out.");
     }
-    const auto job = services.jobs.remove(arguments[0], kPatience);
+    const auto job = services.jobs.remove(arguments[0], kPatience, request.asker);
     if (!job) return no_such_job(request, arguments[0]);
     Response response = tell(*job);
     if (!api::has_ended(job->state)) response.status = kAccepted;

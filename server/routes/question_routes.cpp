@@ -77,7 +77,7 @@ Step<std::shared_ptr<Session>> require_other(Services& services, const Request& 
                                              const api::VolumeRequest& asked) {
     const auto* named = std::get_if<api::OtherSession>(&asked.against);
     if (named == nullptr) return std::shared_ptr<Session>();
-    auto other = services.sessions.find(named->id);
+    auto other = services.sessions.find(named->id, request.asker);
     const std::string pointer = "/against/session";
     if (!other) {
         std::string detail = "No session has the id \"" + named->id.substr(0, 64) +

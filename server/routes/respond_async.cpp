@@ -32,9 +32,10 @@ bool prefers_a_job(const Request& request) {
 
 /// Whether the session that a job was asked of gave way to another of its id. One that is just gone
 /// is the handler's to tell.
-bool is_another(Services& services, const PathArguments& arguments, const std::string& birth) {
+bool is_another(Services& services, const Request& asked, const PathArguments& arguments,
+                const std::string& birth) {
     if (birth.empty()) return false;
-    const auto session = services.sessions.find(arguments[0]);
+    const auto session = services.sessions.find(arguments[0], asked.asker);
     return session && session->facts().birth != birth;
 }
 
@@ -52,7 +53,7 @@ Handler deferrable(Services& services, Handler handler, Names names) {
                                                             const PathArguments& arguments) {
         std::shared_ptr<Session> session;
         if (names == Names::Session && !arguments.empty()) {
-            session = services.sessions.find(arguments[0]);
+            session = services.sessions.find(arguments[0], request.asker);
             if (!session) return handler(request, arguments);
         }
         if (!prefers_a_job(request)) return handler(request, arguments);
@@ -68,7 +69,7 @@ Handler deferrable(Services& services, Handler handler, Names names) {
                                         key = current_request_key()](const Request& asked) {
                 const RequestKeyScope scope(key);
                 return answer_safely(asked, [&] {
-                    return is_another(services, arguments, birth)
+                    return is_another(services, asked, arguments, birth)
                                ? refuse_successor(asked, arguments[0])
                                : handler(asked, arguments);
                 });

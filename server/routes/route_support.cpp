@@ -42,7 +42,7 @@ std::string text_of(double value) {
 
 Step<std::shared_ptr<Session>> require_session(Services& services, const Request& request,
                                                const std::string& id) {
-    if (auto session = services.sessions.find(id)) return session;
+    if (auto session = services.sessions.find(id, request.asker)) return session;
     return no_such_session(services, request, id);
 }
 
@@ -297,6 +297,12 @@ Step<BorrowedMemory> require_memory(Services& services, const Request& request, 
 }
 
 std::optional<Response> refusal_of_memory(Services& services, const Request& request) {
+    const auto quota = request.asker.quotas.max_memory_bytes;
+    if (quota && services.sessions.share_of(request.asker.id).memory_bytes > *quota) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "The sessions of this key have passed its quota max_memory_bytes of " +
+                          std::to_string(*quota) + ". DELETE those that are not needed.");
+    }
     const std::size_t most = services.limits.max_memory_bytes;
     if (services.sessions.has_room(0)) return std::nullopt;
     return refuse(request, api::ProblemType::OutOfMemory,

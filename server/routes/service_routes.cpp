@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "api/responses.hpp"
+#include "server/keys/key_file.hpp"
 #include "server/metrics/families.hpp"
 #include "server/metrics/scrape.hpp"
 #include "server/reply.hpp"
@@ -50,7 +52,7 @@ Handler once_started(Services& services, Handler handler) {
     };
 }
 
-Response get_limits(Services& services, const Request&, const PathArguments&) {
+Response get_limits(Services& services, const Request& request, const PathArguments&) {
     const Limits& limits = services.limits;
     const std::array<std::pair<std::string_view, double>, 19> list{{
         {"max_body_bytes", static_cast<double>(limits.max_body_bytes)},
@@ -73,7 +75,13 @@ Response get_limits(Services& services, const Request&, const PathArguments&) {
         {"session_ttl", static_cast<double>(limits.session_ttl)},
         {"kept_answers", static_cast<double>(limits.kept_answers)},
     }};
-    return ok(kJson, api::write_limits(list));
+    std::optional<api::KeyView> key;
+    if (const Asker& asker = request.asker; !asker.id.empty()) {
+        key = {asker.name, asker.id, {}};
+        for (const auto& [name, value] : named_quotas(asker.quotas))
+            if (value) key->quotas.emplace_back(name, *value);
+    }
+    return ok(kJson, api::write_limits(list, key));
 }
 
 }  // namespace tinsmith::server

@@ -33,6 +33,19 @@ Step<TerrainFormat> require_terrain_format(const Request& request) {
 }
 
 Response refuse_session(const Request& request, const Limits& limits, StoreRefusal why) {
+    const KeyQuotas& quotas = request.asker.quotas;
+    if (why == StoreRefusal::NoMemoryOfKey) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "The sessions of this key would pass its quota max_memory_bytes of " +
+                          std::to_string(quotas.max_memory_bytes.value_or(0)) +
+                          ". DELETE those that are not needed.");
+    }
+    if (why == StoreRefusal::TooManyOfKey) {
+        return refuse(request, api::ProblemType::TooManySessions,
+                      "The quota max_sessions of this key, " +
+                          std::to_string(quotas.max_sessions.value_or(0)) +
+                          ", is reached. DELETE sessions that are not needed.");
+    }
     if (why == StoreRefusal::NoMemory) {
         return refuse(request, api::ProblemType::OutOfMemory,
                       "All meshes together would pass the limit max_memory_bytes of " +
@@ -41,7 +54,8 @@ Response refuse_session(const Request& request, const Limits& limits, StoreRefus
     }
     if (why == StoreRefusal::IdIsTaken) {
         return refuse(request, api::ProblemType::IdTaken,
-                      "A session of that id exists: DELETE it first, or choose another id.");
+                      "A session of that id exists: choose another id, or DELETE the session first "
+                      "if it is yours.");
     }
     return refuse(request, api::ProblemType::TooManySessions,
                   "The limit max_sessions of " + std::to_string(limits.max_sessions) +
@@ -59,8 +73,8 @@ Response make_session(Services& services, const Request& request, std::optional<
     if (!terrain) {
         return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
     }
-    const auto added =
-        services.sessions.add(std::move(terrain->tin), terrain->about, std::move(id));
+    const auto added = services.sessions.add(std::move(terrain->tin), terrain->about, request.asker,
+                                             std::move(id));
     if (const auto* why = std::get_if<StoreRefusal>(&added)) {
         return refuse_session(request, services.limits, *why);
     }
@@ -81,7 +95,7 @@ Response list_sessions(Services& services, const Request& request, const PathArg
     const auto page = require_page(request, kCursorKind);
     if (const auto* refusal = std::get_if<Response>(&page)) return *refusal;
     const auto& [limit, after] = std::get<0>(page);
-    const auto [views, more] = services.sessions.page(after, limit);
+    const auto [views, more] = services.sessions.page(after, limit, request.asker);
     Response response = ok(kJson, api::write_session_list(views));
     if (more) response.with("Link", next_link(request, kCursorKind, limit, views.back().id));
     return response;
@@ -123,7 +137,7 @@ Response fork_session(Services& services, const Request& request, const PathArgu
         return refuse(request, api::ProblemType::BadRequest,
                       "A fork takes no body: it has what the session has now. Leave it out.");
     }
-    const auto forked = services.sessions.fork(*std::get<0>(found));
+    const auto forked = services.sessions.fork(*std::get<0>(found), request.asker);
     if (const auto* why = std::get_if<StoreRefusal>(&forked)) {
         return refuse_session(request, services.limits, *why);
     }
@@ -137,7 +151,7 @@ Response delete_session(Services& services, const Request& request,
         return refuse(request, api::ProblemType::BadRequest,
                       "There is no body here: leave it out.");
     }
-    if (const auto damaged = services.sessions.remove_damaged(arguments[0]))
+    if (const auto damaged = services.sessions.remove_damaged(arguments[0], request.asker))
         return ok(kJson, api::write_session(*damaged));
     auto found = require_session(services, request, arguments[0]);
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;

@@ -365,7 +365,7 @@ TEST_F(Service, AnswersQuestionsWhileEditsGoOn) {
 }
 
 TEST(ServiceStart, WarnsBeyondThisMachine) {
-    ServerUnderTest server({"--host", "0.0.0.0"});
+    ServerUnderTest server({"--host", "0.0.0.0", "--insecure"});
     ASSERT_NE(server.port(), 0) << server.program().output();
     EXPECT_NE(server.stop().find("WITHOUT KEYS"), std::string::npos);
 }

@@ -180,6 +180,8 @@ export const STRICT_REFUSALS = [
 
 /** Not to be had by one polite client; the name of the test that has them. */
 export const ELSEWHERE = {
+  'api-key-required': 'KeyRoutes.AreWantedByEveryRouteUnderV1',
+  'too-many-requests': 'KeyGate.CountsRequestsInFlight',
   'request-timeout': 'ProblemOfStatus.FindsAProblemForWhatTheTransportRefuses',
   'method-not-allowed': 'Router.NamesTheMethodsOfAPath',
   'key-reused': 'Retries.AreRefusedWhereTheRequestIsAnother',

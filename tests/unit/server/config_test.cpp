@@ -176,6 +176,50 @@ TEST(CommandLine, ReadsWhoMayCallAndHow) {
     }
 }
 
+TEST(CommandLine, ReadsWhereKeysAre) {
+    EXPECT_EQ(key_file_of("", ""), "");
+    EXPECT_EQ(key_file_of("", "/data"), "/data/keys");
+    EXPECT_EQ(key_file_of("", "/data/"), "/data/keys");
+    EXPECT_EQ(key_file_of("/etc/keys", "/data"), "/etc/keys");
+    EXPECT_FALSE(serve({}).insecure);
+    EXPECT_TRUE(serve({"--insecure"}).insecure);
+    const TemporaryFile file("[serve]\nkeys = \"/etc/keys\"\nfirst-key = true\n");
+    const ServeConfig lines = serve({"--config", file.path()});
+    EXPECT_EQ(lines.keys, "/etc/keys");
+    EXPECT_TRUE(lines.first_key);
+    ::setenv("TINSMITH_KEYS", "/run/keys", 1);
+    ::setenv("TINSMITH_INSECURE", "true", 1);
+    const ServeConfig environment = serve({});
+    const Command listing = parse({"key", "list"});
+    ::unsetenv("TINSMITH_KEYS");
+    ::unsetenv("TINSMITH_INSECURE");
+    EXPECT_EQ(environment.keys, "/run/keys");
+    EXPECT_TRUE(environment.insecure);
+    EXPECT_EQ(std::get<KeyConfig>(listing).keys, "/run/keys");
+    EXPECT_EQ(std::get<KeyConfig>(listing).action, KeyConfig::Action::List);
+}
+
+TEST(CommandLine, ReadsQuotasOfAKey) {
+    // The server's own limits are no quotas of a key.
+    ::setenv("TINSMITH_MAX_SESSIONS", "3", 1);
+    const Command plain = parse({"key", "add", "alice", "--data", "/data"});
+    ::unsetenv("TINSMITH_MAX_SESSIONS");
+    EXPECT_EQ(std::get<KeyConfig>(plain).quotas, KeyQuotas{});
+    EXPECT_EQ(std::get<KeyConfig>(plain).name, "alice");
+    EXPECT_EQ(std::get<KeyConfig>(plain).action, KeyConfig::Action::Add);
+    const Command all = parse({"key", "add", "alice", "--max-sessions", "0", "--max-memory-bytes",
+                               "1GB", "--max-requests", "4", "--max-requests-per-second", "0.5"});
+    EXPECT_EQ(std::get<KeyConfig>(all).quotas, (KeyQuotas{0, std::size_t{1} << 30, 4, 0.5}));
+    for (const char* bad : {"-1", "many", "nan", ""}) {
+        EXPECT_EQ(exit_code({"key", "add", "alice", "--max-sessions", bad}), kExitUsage) << bad;
+        EXPECT_EQ(exit_code({"key", "add", "alice", "--max-requests-per-second", bad}), kExitUsage)
+            << bad;
+    }
+    EXPECT_EQ(exit_code({"key", "renew", "alice", "--max-sessions", "1"}), kExitUsage);
+    EXPECT_EQ(exit_code({"key", "add"}), kExitUsage);
+    EXPECT_EQ(exit_code({"key"}), kExitUsage);
+}
+
 TEST(CommandLine, RefusesAFileWithUnknownLines) {
     const TemporaryFile file("[serve]\nprot = 9002\n");
     EXPECT_EQ(exit_code({"serve", "--config", file.path()}), kExitUsage);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,10 +25,13 @@ inline constexpr const char* kSquare =
 inline constexpr const char* kParcel =
     R"({"type": "Polygon", "coordinates": [[[2,2],[5,2],[5,5],[2,5],[2,2]]]})";
 
+/// Stands in front of the routes: says who asks, or answers instead.
+using Admit = std::function<std::optional<Response>(Request&)>;
+
 /// What a client is answered, without a socket; each answer is held against /openapi.json.
 inline Response ask(const Router& router, const Services& services, const std::string& method,
                     const std::string& target, std::vector<NameValue> headers = {},
-                    const std::string& body = {}) {
+                    const std::string& body = {}, const Admit& admit = {}) {
     auto parsed = parse_target(target).value();
     Request request;
     request.method = method;
@@ -36,7 +41,8 @@ inline Response ask(const Router& router, const Services& services, const std::s
     request.body = body;
     request.id = "test";
     request.trace = parse_traceparent(request.header("traceparent").value_or(""));
-    Response response = router.handle(request);
+    auto refusal = admit ? admit(request) : std::nullopt;
+    Response response = refusal ? *std::move(refusal) : router.handle(request);
     finish_answer(services.policy, request, response);
     EXPECT_EQ(Description::get().complaint(request, response), "")
         << method << " " << target << " is answered as /openapi.json does not say";
@@ -55,7 +61,7 @@ class Handlers : public ::testing::Test {
 
     Response ask(const std::string& method, const std::string& target,
                  std::vector<NameValue> headers = {}, const std::string& body = {}) {
-        return server::ask(router, services, method, target, std::move(headers), body);
+        return server::ask(router, services, method, target, std::move(headers), body, admit);
     }
 
     Response post(const std::string& target, const std::string& body,
@@ -93,6 +99,8 @@ class Handlers : public ::testing::Test {
         return json::parse(ask("GET", session).body)["version"].get<int>();
     }
 
+    /// What stands in front of the routes, if anything does.
+    Admit admit;
     Services services{few_sessions()};
     Router router{make_routes(services)};
 };

@@ -122,6 +122,7 @@ TEST(Log, TellsRequestsWithAllThatIsKnownOfThem) {
         log_request(request, response, 1.5);
         request.method = "HEAD";
         response.problem = "not-ready";
+        request.asker.name = "a\n\"b";  // the file of keys refuses such names
         log_request(request, response, 1.5);
     });
     ASSERT_EQ(lines.size(), 2U);
@@ -139,6 +140,8 @@ TEST(Log, TellsRequestsWithAllThatIsKnownOfThem) {
     EXPECT_EQ(line["trace"], "0af7651916cd43dd8448eb211c80319c");
     EXPECT_EQ(line["time"].get<std::string>().size(), 29U) << line["time"];
     EXPECT_FALSE(line.contains("problem"));
+    EXPECT_FALSE(line.contains("key"));
+    EXPECT_EQ(lines[1]["key"], "a\n\"b") << "within its quotes";
     EXPECT_EQ(lines[1]["bytes"], 0) << "HEAD has no body";
     EXPECT_EQ(lines[1]["problem"], "not-ready");
 }

@@ -104,12 +104,12 @@ TEST(Session, ServesReadersBesideWriters) {
 
 TEST(SessionStore, KeepsFindsAndRemoves) {
     SessionStore store{Limits{}};
-    const auto added = store.add(square(), {});
+    const auto added = store.add(square(), {}, {});
     ASSERT_TRUE(std::holds_alternative<std::shared_ptr<Session>>(added));
     const auto kept = std::get<0>(added);
-    EXPECT_EQ(store.find(kept->facts().id), kept);
-    EXPECT_EQ(store.find("other"), nullptr);
-    EXPECT_EQ(store.page({}, 10).views.size(), 1U);
+    EXPECT_EQ(store.find(kept->facts().id, {}), kept);
+    EXPECT_EQ(store.find("other", {}), nullptr);
+    EXPECT_EQ(store.page({}, 10, {}).views.size(), 1U);
     EXPECT_TRUE(store.is_kept(*kept));
     EXPECT_EQ(store.remove(*kept, 2), Removal::OtherVersion);
     EXPECT_EQ(store.remove(*kept, 1), Removal::Done);
@@ -123,19 +123,19 @@ TEST(SessionStore, RefusesBeyondItsLimits) {
     Limits limits;
     limits.max_sessions = 1;
     SessionStore few(limits);
-    ASSERT_EQ(few.add(square(), {}, "a").index(), 0U);
-    EXPECT_EQ(std::get<StoreRefusal>(few.add(square(), {}, "a")), StoreRefusal::IdIsTaken);
-    EXPECT_EQ(std::get<StoreRefusal>(few.add(square(), {})), StoreRefusal::TooMany);
+    ASSERT_EQ(few.add(square(), {}, {}, "a").index(), 0U);
+    EXPECT_EQ(std::get<StoreRefusal>(few.add(square(), {}, {}, "a")), StoreRefusal::IdIsTaken);
+    EXPECT_EQ(std::get<StoreRefusal>(few.add(square(), {}, {})), StoreRefusal::TooMany);
     limits.max_memory_bytes = 10;
     SessionStore small(limits);
-    EXPECT_EQ(std::get<StoreRefusal>(small.add(square(), {})), StoreRefusal::NoMemory);
+    EXPECT_EQ(std::get<StoreRefusal>(small.add(square(), {}, {})), StoreRefusal::NoMemory);
     EXPECT_EQ(small.size(), 0U);
 }
 
 TEST(SessionStore, CountsItsMemory) {
     SessionStore store{Limits{}};
     EXPECT_EQ(store.memory_bytes(), 0U);
-    const auto kept = std::get<0>(store.add(square(), {}));
+    const auto kept = std::get<0>(store.add(square(), {}, {}));
     EXPECT_EQ(store.memory_bytes(), kept->view().memory_bytes);
     PolygonEdit edit = edit_of(2, 4);
     edit.origins[0].properties = std::string(10'000, ' ');
@@ -145,9 +145,9 @@ TEST(SessionStore, CountsItsMemory) {
 
 TEST(SessionStore, GivesEachLifeOfAnIdAnotherBirth) {
     SessionStore store{Limits{}};
-    const auto first = std::get<0>(store.add(square(), {}, "a"));
+    const auto first = std::get<0>(store.add(square(), {}, {}, "a"));
     store.remove(*first);
-    const auto second = std::get<0>(store.add(square(), {}, "a"));
+    const auto second = std::get<0>(store.add(square(), {}, {}, "a"));
     EXPECT_NE(first->etag(1), second->etag(1));
 }
 

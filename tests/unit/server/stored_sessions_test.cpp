@@ -8,106 +8,14 @@
 
 #include "core/types/algorithm.hpp"
 #include "server/archive/session_archive.hpp"
-#include "server/routes/restored_answers.hpp"
-#include "server/session_keeper.hpp"
 #include "server/unix_time.hpp"
 #include "tests/store/failing_disk.hpp"
-#include "tests/unit/server/handlers.hpp"
-#include "tests/unit/server/store/journal_folder.hpp"
+#include "tests/unit/server/stored_life.hpp"
 
 namespace tinsmith::server {
 namespace {
 
 using std::chrono::steady_clock;
-
-/// One life of a server over a folder.
-class Life {
-  public:
-    Life(const JournalOptions& options, const Limits& limits, TailBounds tail = {})
-        : services_(limits, {}, open(options, limits, tail)) {
-        keeper_.emplace(services_);
-        store_answers(services_);
-        damaged_ = services_.sessions.take_up();
-        restore_answers(services_);
-        services_.sessions.load_all([] { return true; });
-        router_.emplace(make_routes(services_));
-    }
-
-    Response ask(const std::string& method, const std::string& target,
-                 std::vector<NameValue> headers = {}, const std::string& body = {}) {
-        if (!body.empty()) headers.emplace_back("content-type", "application/json");
-        return server::ask(*router_, services_, method, target, std::move(headers), body);
-    }
-    Response make(const std::string& id) { return ask("PUT", "/v1/sessions/" + id, {}, kSquare); }
-    Response cut(const std::string& id, double at, std::vector<NameValue> headers = {}) {
-        json ring = json::array();
-        for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}, {0, 0}})
-            ring.push_back({at + x, at + y});
-        return ask("POST", "/v1/sessions/" + id + "/polygons", std::move(headers),
-                   json{{"type", "Polygon"}, {"coordinates", {ring}}}.dump());
-    }
-    std::string get(const std::string& path) {
-        const Response response = ask("GET", "/v1/sessions/" + path);
-        EXPECT_EQ(response.status, 200) << path << " " << response.body;
-        return response.body;
-    }
-    json view(const std::string& id) { return json::parse(get(id)); }
-    /// Of all sessions, what does not depend on how much of them is in memory.
-    json list() {
-        json sessions = json::parse(ask("GET", "/v1/sessions").body)["sessions"];
-        for (json& session : sessions)
-            session.erase("memory_bytes");
-        return sessions;
-    }
-    std::size_t tail(const std::string& birth) {
-        return std::get<0>(services_.vault->journal().read(birth)).tail.size();
-    }
-
-    static std::string header_of(const Response& response, const std::string& name) {
-        for (const auto& [key, value] : response.headers)
-            if (key == name) return value;
-        return {};
-    }
-
-    Services& services() { return services_; }
-    SessionKeeper& keeper() { return *keeper_; }
-    const std::vector<std::string>& damaged() const { return damaged_; }
-
-  private:
-    static std::unique_ptr<SessionVault> open(const JournalOptions& options, const Limits& limits,
-                                              TailBounds tail) {
-        auto vault =
-            SessionVault::open(options, {limits.max_history, limits.max_history_bytes}, tail);
-        if (const auto* why = std::get_if<std::string>(&vault)) ADD_FAILURE() << *why;
-        return std::get<0>(std::move(vault));
-    }
-
-    Services services_;
-    std::optional<SessionKeeper> keeper_;
-    std::optional<Router> router_;
-    std::vector<std::string> damaged_;
-};
-
-class StoredSessions : public JournalFolder {
-  protected:
-    /// The old life ends first.
-    Life& restart(TailBounds tail = {}) {
-        life_.reset();
-        return life_.emplace(options_, limits_, tail);
-    }
-    void end() { life_.reset(); }
-    Life& life() { return life_ ? *life_ : restart(); }
-
-    void TearDown() override {
-        end();
-        JournalFolder::TearDown();
-    }
-
-    Limits limits_;
-
-  private:
-    std::optional<Life> life_;
-};
 
 TEST_F(StoredSessions, AreTheSameInTheNextLife) {
     life().make("a");
@@ -216,14 +124,14 @@ TEST_F(StoredSessions, LeaveMemoryForOthersAndComeBack) {
     EXPECT_FALSE(life().services().sessions.has_room(2 * limits_.max_memory_bytes));
     EXPECT_FALSE(life().services().sessions.has_room(limits_.max_memory_bytes + 1));
     const std::size_t in_memory = life().services().sessions.totals().in_memory;
-    const auto some = life().services().sessions.find("s1");
+    const auto some = life().services().sessions.find("s1", {});
     EXPECT_FALSE(life().services().sessions.has_room(limits_.max_memory_bytes));
     EXPECT_GE(life().services().sessions.totals().in_memory, in_memory);
     // What is stored in order is stored of all, in memory or not.
     life().keeper().snapshot_all(steady_clock::time_point::max());
     EXPECT_EQ(life().services().sessions.ids_with_tail().size(), 0U);
     // What somebody holds stays.
-    const auto held = life().services().sessions.find("s0");
+    const auto held = life().services().sessions.find("s0", {});
     for (int i = 1; i < 12; ++i)
         life().get("s" + std::to_string(i));
     EXPECT_TRUE(life().services().sessions.is_kept(*held));
@@ -240,8 +148,8 @@ TEST_F(StoredSessions, EndWhereNobodyAsksForThem) {
     const auto now = system_clock::to_time_t(system_clock::now());
     EXPECT_TRUE(life().services().sessions.remove_unused_since(now - 3600).empty());
     // What came of questions is not stored: a start counts as one.
-    life().services().vault->journal().touch(life().services().sessions.find("a")->facts().birth,
-                                             1000);
+    life().services().vault->journal().touch(
+        life().services().sessions.find("a", {})->facts().birth, 1000);
     restart();
     EXPECT_TRUE(life().services().sessions.remove_unused_since(now - 3600).empty());
     EXPECT_GT(life().view("a")["expires"], "2026");
@@ -258,7 +166,7 @@ TEST_F(StoredSessions, AreStoredAnewWhenTheirTailIsLong) {
         life().ask("POST", "/v1/sessions/a/" + std::string(i % 2 == 0 ? "undo" : "redo"));
     for (int i = 0; i < 12; ++i)
         ASSERT_EQ(life().cut("a", 1 + i % 4 * 2).status, 200);
-    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const std::string birth = life().services().sessions.find("a", {})->facts().birth;
     const auto until = steady_clock::now() + std::chrono::seconds(20);
     std::uint64_t stored = 1;
     while (stored == 1 && steady_clock::now() < until) {
@@ -282,7 +190,7 @@ TEST_F(StoredSessions, AreStoredAnewWhenTheirTailIsLong) {
 TEST_F(StoredSessions, ThatAreDamagedAreOutOfServiceAlone) {
     life().make("a");
     life().make("b");
-    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const std::string birth = life().services().sessions.find("a", {})->facts().birth;
     // A change that nobody made: its digest is not what doing it gives.
     const auto fault = life().services().vault->journal().append({birth,
                                                                   2,
@@ -307,12 +215,55 @@ TEST_F(StoredSessions, ThatAreDamagedAreOutOfServiceAlone) {
     EXPECT_EQ(life().make("a").status, 201);
 }
 
+TEST_F(StoredSessions, BelongToTheirKeysInTheNextLifeToo) {
+    const Asker alice{"a1", "alice", {}}, bob{"b2", "bob", {}};
+    const auto as = [this](const Asker& asker) -> Life& {
+        life().asker = asker;
+        return life();
+    };
+    as({}).make("old");
+    const std::vector<NameValue> key{{"idempotency-key", "k"}};
+    as(alice).make("hers");
+    EXPECT_EQ(as(alice).cut("hers", 2, key).status, 200);
+    const Response made = as(alice).ask("POST", "/v1/sessions", key, kSquare);
+    const std::string fork =
+        Life::header_of(as(bob).ask("POST", "/v1/sessions/old/fork"), "Location");
+    const auto check = [&] {
+        const auto listed = [&](const Asker& asker) {
+            return json::parse(as(asker).ask("GET", "/v1/sessions").body)["sessions"].size();
+        };
+        EXPECT_EQ(listed(alice), 3U);
+        EXPECT_EQ(listed(bob), 2U);
+        EXPECT_EQ(listed({}), 4U) << "where no keys are used, all is everyone's";
+        EXPECT_EQ(as(bob).ask("GET", "/v1/sessions/hers").status, 404);
+        EXPECT_EQ(as(bob).ask("DELETE", "/v1/sessions/hers").status, 404);
+        EXPECT_EQ(as(bob).cut("hers", 2, key).status, 404);
+        EXPECT_EQ(as(bob).make("hers").status, 409);
+        EXPECT_EQ(as(alice).ask("GET", fork).status, 404);
+        EXPECT_EQ(as(bob).ask("GET", fork).status, 200);
+        EXPECT_EQ(Life::header_of(as(alice).cut("hers", 2, key), "Idempotency-Replayed"), "true");
+        const Response again = as(alice).ask("POST", "/v1/sessions", key, kSquare);
+        EXPECT_EQ(Life::header_of(again, "Idempotency-Replayed"), "true");
+        EXPECT_EQ(Life::header_of(again, "Location"), Life::header_of(made, "Location"));
+        EXPECT_EQ(as(bob).ask("GET", "/v1/sessions/old").status, 200);
+    };
+    check();
+    restart();
+    check();
+    life().keeper().snapshot_all(steady_clock::time_point::max());
+    restart();
+    check();
+    const Response another = as(bob).ask("POST", "/v1/sessions", key, kSquare);
+    EXPECT_EQ(Life::header_of(another, "Idempotency-Replayed"), "") << "his key is not hers";
+    EXPECT_NE(Life::header_of(another, "Location"), Life::header_of(made, "Location"));
+}
+
 TEST_F(StoredSessions, OfAnotherAlgorithmAreReadOnly) {
     life().make("a");
     life().cut("a", 2);
     const std::string mesh = life().get("a/mesh.json");
     life().keeper().snapshot_all(steady_clock::time_point::max());
-    const std::string birth = life().services().sessions.find("a")->facts().birth;
+    const std::string birth = life().services().sessions.find("a", {})->facts().birth;
     ASSERT_FALSE(life().services().vault->journal().append({birth,
                                                             3,
                                                             core::kAlgorithm + 1,

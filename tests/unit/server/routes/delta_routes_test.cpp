@@ -25,7 +25,7 @@ class DeltaRoutes : public Handlers {
 
     /// Empty: the client's buffers are the session's mesh, bit for bit.
     std::string compare(const DeltaClient& client) {
-        const MeshCopy copy = services.sessions.find(session.substr(13))->copy_mesh();
+        const MeshCopy copy = services.sessions.find(session.substr(13), {})->copy_mesh();
         if (client.version() != copy.version) return "another version";
         if (client.vertices().size() != copy.mesh.vertices.size() ||
             client.triangles() != copy.mesh.triangles)

@@ -180,7 +180,7 @@ TEST_F(EditRoutes, EndAtTheDeadlineWhileTheirRingIsDrawn) {
         const json body{{"operation", "set"}, {"polygon", "p2"}, {"elevation", 1}, {strip, 0.3}};
         const auto asked = api::read_edit_request(body.dump(), services.read_limits());
         ASSERT_TRUE(asked);
-        const auto made = make_edit(*services.sessions.find(session.substr(13)), *asked, limits,
+        const auto made = make_edit(*services.sessions.find(session.substr(13), {}), *asked, limits,
                                     services.stopping);
         ASSERT_TRUE(std::holds_alternative<NoEdit>(made));
         const auto& no = std::get<NoEdit>(made);

@@ -182,7 +182,7 @@ TEST_F(JobRoutes, ComeInPages) {
 TEST_F(JobRoutes, LeaveTheSessionAsItWasWhenStopped) {
     const Response made = post("/v1/sessions", grid(30));
     const std::string path = header(made, "Location");
-    Session& session = *services.sessions.find(path.substr(13));
+    Session& session = *services.sessions.find(path.substr(13), {});
     post(path + "/polygons", kParcel);
     const core::Tin before = session.copy_tin();
     const std::string polygons = ask("GET", path + "/polygons").body;

@@ -242,7 +242,7 @@ class CostlyRegions : public RegionRoutes {
     }
     /// What finding both regions comes to under these limits.
     core::Result<std::vector<api::RegionView>> find(const RegionLimits& limits) {
-        const auto found = services.sessions.find(session.substr(13));
+        const auto found = services.sessions.find(session.substr(13), {});
         const RegionGround ground = found->look(
             [](const core::Tin& tin, const std::vector<Polygon>& polygons, std::uint64_t) {
                 const std::vector<std::size_t> both{0, 1};

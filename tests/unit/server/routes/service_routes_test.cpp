@@ -32,7 +32,7 @@ class ServiceRoutes : public Handlers {
     }
 
     std::shared_ptr<Session> session_at(const std::string& path) {
-        return services.sessions.find(path.substr(path.rfind('/') + 1));
+        return services.sessions.find(path.substr(path.rfind('/') + 1), {});
     }
 
     /// The answer of another thread, if it comes while this one holds what `held` holds; a thread

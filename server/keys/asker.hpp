@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tinsmith::server {
+
+/// What one key may ask for, of the limits of all; nothing: as much as everyone.
+struct KeyQuotas {
+    std::optional<std::size_t> max_sessions{};
+    std::optional<std::size_t> max_memory_bytes{};  ///< of its sessions, in memory or not
+    std::optional<std::size_t> max_requests{};      ///< at the same time
+    std::optional<double> max_requests_per_second{};
+
+    friend bool operator==(const KeyQuotas&, const KeyQuotas&) = default;
+};
+
+/// Who asks: a key, or nobody in particular where the server asks for none.
+///
+/// Laws: what a key made is seen by that key alone. What was made where nobody had to show a key,
+/// the demo terrain among it, was open to all who asked and stays so: every key sees it. Where no
+/// keys are used everything is seen.
+struct Asker {
+    std::string id{};    ///< of the key, the same whatever it is called; empty: no keys are used
+    std::string name{};  ///< for people
+    KeyQuotas quotas{};
+
+    /// `owner`: the id of the key that made it; empty: none did.
+    bool may_see(std::string_view owner) const {
+        return id.empty() || owner.empty() || owner == id;
+    }
+};
+
+}  // namespace tinsmith::server
