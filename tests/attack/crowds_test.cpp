@@ -35,12 +35,14 @@ TEST(Crowd, OfIdleConnections) {
         std::list<Connection> all;
         for (std::size_t i = 0; i < wanted; ++i)
             all.emplace_back(victim.port()).send(i % 2 == 0 ? "" : "GET /v1/limits HT");
-        const auto start = Clock::now();
-        Connection honest(victim.port(), 60);
-        honest.send(request_text("GET", "/healthz"));
-        const int status = honest.read().status;
-        std::cout << wanted << " idle connections: meanwhile a client waited "
-                  << seconds_since(start) << " s for status " << status << "\n";
+        if (is_long_form()) {
+            const auto start = Clock::now();
+            Connection honest(victim.port(), 60);
+            honest.send(request_text("GET", "/healthz"));
+            const int status = honest.read().status;
+            std::cout << wanted << " idle connections: meanwhile a client waited "
+                      << seconds_since(start) << " s for status " << status << "\n";
+        }
     }
     EXPECT_EQ(victim.harm_at_the_end(), "");
 }
