@@ -52,6 +52,10 @@ TEST_F(LyingFiles, OfGltf) {
     expect_refused(lying_gltf());
 }
 
+TEST_F(LyingFiles, DISABLED_OfAMeshInVeryManyPlaces) {
+    expect_refused({mesh_in_many_places()});
+}
+
 TEST_F(LyingFiles, OfGeoTiff) {
     expect_refused(lying_tiffs());
 }

@@ -17,6 +17,8 @@ struct LyingFile {
 
 /// Small files, each a lie of another kind.
 std::vector<LyingFile> lying_gltf();
+/// One triangle 64 million times, in under a megabyte.
+LyingFile mesh_in_many_places();
 std::vector<LyingFile> lying_tiffs();
 std::vector<LyingFile> lying_texts();  ///< XML, OBJ, ESRI grids, CSV, JSON
 
