@@ -61,11 +61,16 @@ Connection::~Connection() {
 }
 
 void Connection::send(std::string_view bytes) const {
+    try_send(bytes);
+}
+
+bool Connection::try_send(std::string_view bytes) const {
     while (!bytes.empty()) {
         const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-        if (sent <= 0) return;
+        if (sent <= 0) return false;
         bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
+    return true;
 }
 
 void Connection::end_sending() const {

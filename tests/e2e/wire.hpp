@@ -36,6 +36,9 @@ class Connection {
     /// Bytes as they are. Goes on where the server closes early.
     void send(std::string_view bytes) const;
 
+    /// The same. False: the server has closed, or takes nothing for that long.
+    bool try_send(std::string_view bytes) const;
+
     /// No more bytes will come from this side.
     void end_sending() const;
 

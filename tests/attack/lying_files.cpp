@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/attack/lying_files.hpp"
+
+#include <map>
+
+#include <zlib.h>
+
+namespace tinsmith::e2e {
+
+namespace {
+
+/// Tags of TIFF, as its standard numbers them.
+enum Tag : std::uint16_t {
+    kWidth = 256,
+    kLength = 257,
+    kBitsPerSample = 258,
+    kCompression = 259,
+    kPhotometric = 262,
+    kStripOffsets = 273,
+    kSamplesPerPixel = 277,
+    kRowsPerStrip = 278,
+    kStripByteCounts = 279,
+    kTileWidth = 322,
+    kTileLength = 323,
+    kTileOffsets = 324,
+    kTileByteCounts = 325,
+    kSampleFormat = 339,
+};
+constexpr std::uint32_t kDeflate = 8;
+
+/// A TIFF of one image, each tag of one number; the data right after the head of 8 bytes.
+std::string tiff(const std::map<std::uint16_t, std::uint32_t>& tags, const std::string& data,
+                 std::uint32_t next = 0) {
+    constexpr std::uint16_t kLong = 4;
+    std::string out = "II*";
+    out.push_back('\0');
+    const std::string padded = data + std::string(data.size() % 2, '\0');
+    append_number(out, static_cast<std::uint32_t>(8 + padded.size()));
+    out += padded;
+    append_number(out, static_cast<std::uint16_t>(tags.size()));
+    for (const auto& [tag, value] : tags) {
+        append_number(out, tag);
+        append_number(out, kLong);
+        append_number(out, std::uint32_t{1});
+        append_number(out, value);
+    }
+    append_number(out, next);
+    return out;
+}
+
+/// Tags of elevations in floats, with what else is given.
+std::map<std::uint16_t, std::uint32_t> floats(std::uint32_t width, std::uint32_t length,
+                                              std::map<std::uint16_t, std::uint32_t> more) {
+    std::map<std::uint16_t, std::uint32_t> tags{
+        {kWidth, width},   {kLength, length},     {kBitsPerSample, 32}, {kCompression, 1},
+        {kPhotometric, 1}, {kSamplesPerPixel, 1}, {kSampleFormat, 3}};
+    for (const auto& [tag, value] : more)
+        tags[tag] = value;
+    return tags;
+}
+
+std::map<std::uint16_t, std::uint32_t> strip(std::uint32_t rows, std::uint32_t bytes) {
+    return {{kStripOffsets, 8}, {kRowsPerStrip, rows}, {kStripByteCounts, bytes}};
+}
+
+std::map<std::uint16_t, std::uint32_t> tile(std::uint32_t side, std::uint32_t bytes) {
+    return {{kTileWidth, side}, {kTileLength, side}, {kTileOffsets, 8}, {kTileByteCounts, bytes}};
+}
+
+std::string deflated_zeros(std::size_t count) {
+    const std::string zeros(count, '\0');
+    std::string packed(compressBound(static_cast<uLong>(count)), '\0');
+    auto size = static_cast<uLongf>(packed.size());
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+             reinterpret_cast<const Bytef*>(zeros.data()), static_cast<uLong>(count));
+    packed.resize(size);
+    return packed;
+}
+
+/// Ten entities, each ten of the one before: 10^10 characters where they are put in.
+std::string billion_laughs() {
+    std::string xml = "<?xml version=\"1.0\"?>\n<!DOCTYPE LandXML [<!ENTITY l0 \"ha\">";
+    for (int i = 1; i <= 10; ++i) {
+        xml += "<!ENTITY l" + std::to_string(i) + " \"" +
+               repeated("&l" + std::to_string(i - 1) + ";", 10) + "\">";
+    }
+    return xml + "]>\n<LandXML version=\"1.2\">&l10;</LandXML>";
+}
+
+std::string json_grid(const std::string& columns, const std::string& rows) {
+    return R"({"grid":{"origin":[0,0],"cell":[1,1],"columns":)" + columns + R"(,"rows":)" + rows +
+           R"(,"elevations":[1,2,3,4]}})";
+}
+
+}  // namespace
+
+std::vector<LyingFile> lying_tiffs() {
+    const std::string four(16 * 4, '\0');
+    const std::string type = "image/tiff";
+    std::map<std::uint16_t, std::uint32_t> compressed = strip(3000, 0);
+    compressed[kCompression] = kDeflate;
+    const std::string bomb = deflated_zeros(std::size_t{36'000'000});
+    compressed[kStripByteCounts] = static_cast<std::uint32_t>(bomb.size());
+    std::string directory_of_65535 = tiff(floats(4, 4, strip(4, 64)), four);
+    directory_of_65535[8 + 64] = '\xFF', directory_of_65535[8 + 65] = '\xFF';
+    std::string big = "II+";
+    big.push_back('\0');
+    append_number(big, std::uint16_t{8});
+    append_number(big, std::uint16_t{0});
+    append_number(big, std::uint64_t{16});
+    append_number(big, ~std::uint64_t{0});
+    return {
+        {"4e9 by 4e9 pixels", type, tiff(floats(4'000'000'000, 4'000'000'000, strip(4, 64)), four),
+         400},
+        {"2e9 by 2e9 pixels", type, tiff(floats(2'000'000'000, 2'000'000'000, strip(4, 64)), four),
+         413},
+        {"30,000 by 30,000 pixels of nothing", type,
+         tiff(floats(30'000, 30'000, strip(30'000, 64)), four), 413},
+        {"a strip of 4 GiB", type, tiff(floats(4, 4, strip(4, 0xFFFFFFFF)), four), 422},
+        {"a tile of 4 GiB", type, tiff(floats(4, 4, tile(32'768, 64)), four), 413},
+        {"a tile of 16 EiB", type, tiff(floats(4, 4, tile(0xFFFFFFF0, 64)), four), 400},
+        {"a bomb of deflate beyond what is taken", type,
+         tiff(floats(12'000, 12'000, compressed), bomb), 413},
+        {"a directory of 65,535 entries", type, directory_of_65535, 400},
+        {"a directory that goes on in itself", type,
+         tiff(floats(12'000, 12'000, strip(4, 64)), four, 8 + 64), 413},
+        {"BigTIFF of 2^64 entries", type, big, 400},
+    };
+}
+
+std::vector<LyingFile> lying_texts() {
+    const std::string json = "application/json";
+    const std::string xml = "application/xml";
+    const std::string grid = "text/plain";
+    return {
+        {"entities of entities", xml, billion_laughs(), 422},
+        {"one entity ten thousand times", xml,
+         "<!DOCTYPE LandXML [<!ENTITY a \"" + std::string(100'000, 'a') + "\">]><LandXML>" +
+             repeated("&a;", 10'000) + "</LandXML>",
+         422},
+        {"an entity of a file", xml,
+         "<!DOCTYPE LandXML [<!ENTITY a SYSTEM \"file:///etc/passwd\">]><LandXML>&a;</LandXML>",
+         422},
+        {"elements 300,000 deep", xml, repeated("<a>", 300'000) + repeated("</a>", 300'000), 422},
+        {"300,000 empty elements", xml, "<LandXML>" + repeated("<a/>", 300'000) + "</LandXML>",
+         422},
+        {"300,000 attributes", xml, "<LandXML" + repeated(" a=''", 300'000) + "/>", 422},
+        {"grid of 2e9 by 2e9", grid,
+         "ncols 2000000000\nnrows 2000000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n", 413},
+        {"grid of 1e30 columns", grid,
+         "ncols 1e30\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n", 422},
+        {"a line of 4 MB in CSV", "text/csv", std::string(4'000'000, '1'), 422},
+        {"a face of 200,000 corners", "model/obj",
+         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + repeated("1 2 3 ", 66'667) + "\n", 422},
+        {"JSON grid of 4e9 by 4e9", json, json_grid("4000000000", "4000000000"), 413},
+        {"JSON grid of 2^32 by 2^32", json, json_grid("4294967296", "4294967296"), 422},
+        {"terrain of 500,000 opening brackets", json, std::string(500'000, '['), 400},
+        {"terrain of 300,000 unknown members", json,
+         "{\"a\":0" + repeated(",\"a\":{}", 300'000) + "}", 422},
+    };
+}
+
+}  // namespace tinsmith::e2e
