@@ -94,7 +94,7 @@ void SessionKeeper::snapshot_or_again(const std::string& id, Due due) {
 bool SessionKeeper::snapshot(const std::string& id, IfCold if_cold) {
     try {
         std::shared_ptr<Session> held;
-        if (if_cold == IfCold::Load) held = services_.sessions.find(id);
+        if (if_cold == IfCold::Load) held = services_.sessions.find(id, {});
         services_.sessions.snapshot(id);
         return true;
     } catch (const SessionIsGone&) {
