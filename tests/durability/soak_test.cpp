@@ -137,6 +137,11 @@ class SoakClient {
                                       std::to_string(++keys_));
         const Answer answer = ask(request);
         if (has_key && dice_.chance(0.5)) ask(request);
+        if (request.kind == "mesh unless known" && answer.status == 200)
+            ask({"mesh, if it changed",
+                 "GET",
+                 request.target,
+                 {"If-None-Match: " + answer.header("etag"), "Accept-Encoding: gzip"}});
         if (request.kind == "fork" && answer.status == 201)
             ask({"end of a fork", "DELETE", answer.header("location")});
         if (answer.status == 202) follow(answer.header("location"));
