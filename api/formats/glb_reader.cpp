@@ -11,6 +11,7 @@
 #include "api/crs.hpp"
 #include "api/formats/draco_decoder.hpp"
 #include "api/formats/gltf_accessors.hpp"
+#include "api/formats/gltf_count.hpp"
 #include "api/formats/gltf_model.hpp"
 #include "api/formats/vertex_welder.hpp"
 
@@ -87,6 +88,11 @@ class SceneReader {
         : model_(model), limits_(limits), log_(log), accessors_(model, limits, log) {}
 
     Terrain read() {
+        if (told_triangles(model_, limits_.max_triangles) > limits_.max_triangles)
+            stop({"TOO_MANY_TRIANGLES",
+                  "The scene shows more than " + std::to_string(limits_.max_triangles) +
+                      " triangles, each mesh in each of its places; no more are taken.",
+                  "/nodes"});
         walk();
         // Vertices are numbered by triangles only: lines come when all of those are known.
         for (const Line& line : lines_)

@@ -52,7 +52,7 @@ TEST_F(LyingFiles, OfGltf) {
     expect_refused(lying_gltf());
 }
 
-TEST_F(LyingFiles, DISABLED_OfAMeshInVeryManyPlaces) {
+TEST_F(LyingFiles, OfAMeshInVeryManyPlaces) {
     expect_refused({mesh_in_many_places()});
 }
 
