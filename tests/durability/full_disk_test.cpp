@@ -86,7 +86,9 @@ class FullDisk : public testing::Test {
         const Answer answer =
             client_->ask("POST", kSession + "/polygons",
                          {kJson, "Idempotency-Key: k" + std::to_string(keys_)}, body_);
-        if (answer.status == 200) acknowledged_ = version_in(answer);
+        if (answer.status != 200) return answer;
+        acknowledged_ = version_in(answer);
+        ++polygons_;
         return answer;
     }
 
@@ -141,7 +143,8 @@ class FullDisk : public testing::Test {
         } changes[] = {
             {"POST", kSession + "/undo", ""},
             {"POST", kSession + "/edits", R"({"operation":"smooth","polygon":"p1","passes":1})"},
-            {"DELETE", kSession + "/polygons/p1", ""},
+            // The newest one: an old one takes all the later ones to be made again.
+            {"DELETE", kSession + "/polygons/p" + std::to_string(polygons_), ""},
             {"POST", kSession + "/fork", ""},
             {"PUT", "/v1/sessions/another", grid_text(dice_, kPosts)},
         };
@@ -190,6 +193,7 @@ class FullDisk : public testing::Test {
     std::string body_;
     int keys_ = 0;
     std::uint64_t acknowledged_ = 0;
+    int polygons_ = 0;  ///< that are in the mesh: p1 and so on
 };
 
 TEST_F(FullDisk, RefusesChangesAndRecoversWithRoom) {
