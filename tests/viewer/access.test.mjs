@@ -55,6 +55,8 @@ for (const [name, viewport] of [['a desk', {width: 1280, height: 720}], ['a tele
     // The policy lets no script in but the page's own: this one comes in beside it, by the debugger.
     await page.evaluate(readFileSync(AXE, 'utf8'));
     const look = async (what) => {
+      // A button on its way to another colour has the contrast of neither.
+      await page.evaluate(() => Promise.allSettled(document.getAnimations().map((one) => one.finished)));
       const {violations} = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
       const serious = violations.filter(({impact}) => ['serious', 'critical'].includes(impact))
         .map(({id, nodes}) => `${what}: ${id} ${nodes.map(({target}) => target).join(' ')}`);
