@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/requests.hpp"
-#include "server/http_server.hpp"
+#include "server/http/http_server.hpp"
 #include "server/keys/asker.hpp"
 #include "server/log.hpp"
 #include "server/policy.hpp"

@@ -10,7 +10,7 @@
 #include "server/commands/stopping.hpp"
 #include "server/demo.hpp"
 #include "server/file_io.hpp"
-#include "server/http_server.hpp"
+#include "server/http/http_server.hpp"
 #include "server/keys/gate.hpp"
 #include "server/log.hpp"
 #include "server/router.hpp"
@@ -215,22 +215,22 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     const Router page_router(make_page_routes(services), &services.metrics);
     HttpServer server(
         config.http,
-        [&gate](Request& head, bool comes_again) {
-            return comes_again ? gate.would_refuse(head) : gate.admit(head);
-        },
-        [&](const Request& request) {
-            const Metrics::InFlight one(services.metrics);
-            return request.path.starts_with(kPageFolder) ? page_router.handle(request)
-                                                         : router.handle(request);
-        },
-        [&services](const Request& request, Response& response) {
-            finish_answer(services.policy, request, response);
-        },
-        [&services](const Request& request, const Response& response, double seconds) {
-            services.metrics.request(response.route, request.method, response.status, seconds,
-                                     request.body.size(), bytes_sent(request, response));
-            log_request(request, response, seconds * 1e3);
-        });
+        {[&gate](Request& head, bool comes_again) {
+             return comes_again ? gate.would_refuse(head) : gate.admit(head);
+         },
+         [&](const Request& request) {
+             const Metrics::InFlight one(services.metrics);
+             return request.path.starts_with(kPageFolder) ? page_router.handle(request)
+                                                          : router.handle(request);
+         },
+         [&services](const Request& request, Response& response) {
+             finish_answer(services.policy, request, response);
+         },
+         [&services](const Request& request, const Response& response, double seconds) {
+             services.metrics.request(response.route, request.method, response.status, seconds,
+                                      request.body.size(), bytes_sent(request, response));
+             log_request(request, response, seconds * 1e3);
+         }});
     std::string error;
     const int port = server.bind(error);
     if (port == 0) return fail(error);

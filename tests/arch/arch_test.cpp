@@ -64,7 +64,7 @@ std::string verdict(const std::string& path, const std::string& body) {
 TEST(Rules, PassASoundFile) {
     EXPECT_EQ(verdict("core/edit/trim.cpp", "#include \"core/edit/trim.hpp\"\n#include <vector>"),
               "");
-    EXPECT_EQ(verdict("server/http_server.cpp", "#include <httplib.h>"), "");
+    EXPECT_EQ(verdict("server/http/protocol.cpp", "#include <httplib.h>"), "");
     EXPECT_EQ(verdict("tests/unit/a_test.cpp", "#include \"server/router.hpp\""), "");
 }
 

@@ -8,10 +8,6 @@
 
 namespace tinsmith::e2e {
 
-/// Releases of the HTTP library from 0.14 on bound a request's head by themselves, before the
-/// server gets to say anything.
-inline constexpr bool kLibraryLimitsHeads = TINSMITH_HTTP_LIBRARY_LIMITS_HEADS;
-
 /// An answer as it came over the wire; status 0: none came.
 struct Answer {
     int status = 0;

@@ -18,4 +18,7 @@ std::optional<api::Problem> check_request_head(const Request& request, const Lim
 /// True for the methods whose body the server reads.
 bool takes_body(const std::string& method);
 
+/// True where the client wants no further request on its connection (RFC 9112 9.6).
+bool asks_to_close(const Request& request);
+
 }  // namespace tinsmith::server

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/guard.hpp"
+#include "server/http/guard.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <string>
+
+#include "api/field_list.hpp"
+#include "server/entity_tag.hpp"
 
 namespace tinsmith::server {
 
@@ -67,15 +70,17 @@ bool takes_body(const std::string& method) {
     return method == "POST" || method == "PUT" || method == "PATCH" || method == "DELETE";
 }
 
+bool asks_to_close(const Request& request) {
+    const std::string wishes = api::lower_case(combined_field(request, "connection").value_or(""));
+    for (std::string_view rest = wishes; !rest.empty();)
+        if (api::take_part(rest, ',') == "close") return true;
+    return false;
+}
+
 std::optional<Problem> check_request_head(const Request& request, const Limits& limits) {
     if (request.path.size() > kMaxPathBytes) {
         return Problem{ProblemType::PathTooLong,
                        "The path is longer than " + std::to_string(kMaxPathBytes) + " bytes.",
-                       {}};
-    }
-    if (request.headers.size() > kMaxHeaders) {
-        return Problem{ProblemType::TooManyHeaders,
-                       "Send at most " + std::to_string(kMaxHeaders) + " headers.",
                        {}};
     }
     if (!std::all_of(request.headers.begin(), request.headers.end(),

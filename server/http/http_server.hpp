@@ -17,19 +17,26 @@ struct HttpOptions {
     int port = 8080;  ///< 0: any free one
     std::size_t threads = 32;
     Limits limits;
-    std::chrono::seconds keep_alive{2};       ///< an idle connection holds a thread that long
-    std::chrono::seconds read_timeout{5};     ///< for one read
+    std::size_t max_connections = 10'000;     ///< open at the same time
+    std::chrono::seconds keep_alive{60};      ///< for which a connection may idle
+    std::chrono::seconds head_deadline{10};   ///< for a whole head
+    std::chrono::seconds wait{5};             ///< for one read or write of a body or an answer
     std::chrono::seconds body_deadline{120};  ///< for a whole body
+    /// For bodies and answers the time above is given in any case, and more to who sends or takes
+    /// at least so many bytes a second.
+    std::chrono::seconds patience{10};
+    std::size_t slowest = 8192;
 };
 
 /// The socket side: takes requests off connections, has them judged by `check_request_head`, reads
 /// their bodies, hands them to one function and writes what it answers.
 ///
-/// The library underneath is seen in http_server.cpp alone.
-/// Laws: the handler is called on one of `threads` threads and only with whole bodies; each answer
-/// is told with its time; a refusal that leaves bytes unread closes the connection.
-/// Not promised: pipelining (a second request in the same packet may be dropped), ranges, and
-/// service while all threads are held by slow clients; a proxy in front gives these.
+/// Laws: the handler is called on one of `threads` threads and only with whole bodies; a connection
+/// that idles or whose head drips in holds none (reception.hpp); each answer is told with its time;
+/// a refusal that leaves bytes unread closes the connection.
+/// Not promised: ranges, and service while all threads are held by bodies that drip in and answers
+/// that nobody reads, which takes ten seconds each at most unless they are fed; a proxy in front
+/// gives it.
 class HttpServer {
   public:
     /// Who may ask, by the head: nothing, and perhaps a word on who it is, or what is answered
@@ -40,9 +47,14 @@ class HttpServer {
     using Finish = std::function<void(const Request&, Response&)>;
     using Told = std::function<void(const Request&, const Response&, double seconds)>;
 
-    /// `finish` has the last word on every answer, those that no handler gave included; `told`
-    /// hears of each, with the time since its head was read, and must not throw.
-    HttpServer(HttpOptions options, Admit admit, Answer answer, Finish finish, Told told);
+    struct Calls {
+        Admit admit;
+        Answer answer;
+        Finish finish;  ///< has the last word on every answer, those that no handler gave included
+        Told told;      ///< hears of each, with the time since its head was read; must not throw
+    };
+
+    HttpServer(HttpOptions options, Calls calls);
     ~HttpServer();
     HttpServer(const HttpServer&) = delete;
     HttpServer& operator=(const HttpServer&) = delete;
@@ -51,7 +63,7 @@ class HttpServer {
     /// process holds is refused, never shared.
     int bind(std::string& error);
 
-    /// Serves until `stop`; requests under way are answered first. False: the socket failed.
+    /// Serves until `stop`; what has arrived is answered first. False: the socket failed. Once.
     /// Requires: bind() returned a port.
     bool serve();
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "server/http/reception.hpp"
+
+namespace tinsmith::server {
+
+/// The threads that serve what has arrived, in the order in which it came.
+class Crew {
+  public:
+    using Serve = std::function<void(Arrival)>;
+
+    Crew(std::size_t threads, Serve serve);
+    ~Crew() { finish(); }
+    Crew(const Crew&) = delete;
+    Crew& operator=(const Crew&) = delete;
+
+    /// From any thread. After `finish` what comes is dropped.
+    void add(Arrival arrival);
+
+    /// Serves what has been added, then ends the threads. Once or more, from one thread that is
+    /// none of them.
+    void finish();
+
+    /// Whether some that have arrived wait for a thread.
+    bool is_behind() const { return waiting_ > 0; }
+    /// Whether a thread may do without work for a moment and nobody would miss it.
+    bool has_spare() const { return !is_behind() && busy_ <= threads_.size() / 2; }
+
+  private:
+    void work();
+
+    const Serve serve_;
+    std::atomic<std::size_t> waiting_{0};
+    std::atomic<std::size_t> busy_{0};  ///< threads that serve
+    std::mutex mutex_;                  ///< guards the next
+    std::condition_variable changed_;
+    std::deque<Arrival> arrivals_;
+    bool finishing_ = false;
+    std::vector<std::thread> threads_;
+};
+
+}  // namespace tinsmith::server
