@@ -40,6 +40,12 @@ else
     echo "Fetching Debian $release"
     debootstrap --variant=minbase "$release" "$root" >"$scratch/debootstrap.log" ||
         { tail -n 20 "$scratch/debootstrap.log" >&2; exit 1; }
+    # As Debian's own slim images: documentation and translations neither there nor installed later.
+    unneeded=(/usr/share/{doc,info,locale,man})
+    printf 'path-exclude %s/*\n' "${unneeded[@]}" >"$root/etc/dpkg/dpkg.cfg.d/slim"
+    echo 'path-include /usr/share/doc/*/copyright' >>"$root/etc/dpkg/dpkg.cfg.d/slim"
+    find "${unneeded[@]/#/$root}" -type f,l ! -name copyright -delete
+    rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/*
 fi
 container=$("${image[@]}" from scratch)
 "${image[@]}" add --quiet "$container" "$root/" / >/dev/null

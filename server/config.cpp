@@ -198,8 +198,12 @@ CLI::App* add_serve(CLI::App& app, ServeConfig& config) {
         ->add_flag("--insecure", config.insecure,
                    "Listen beyond this machine without API keys: everyone may do everything")
         ->envname("TINSMITH_INSECURE");
-    add_setting(*serve, "threads", http.threads, "Connections served at the same time")
+    add_setting(*serve, "threads", http.threads, "Requests served at the same time")
         ->check(CLI::Range(2, 1024));
+    add_setting(*serve, "max_connections", http.max_connections,
+                "Connections open at the same time; idle ones make room")
+        ->check(digit_first())
+        ->check(CLI::Range(1, 1'000'000));
     add_limits(*serve, http.limits);
     add_policy(*serve, config.policy);
     static const std::map<std::string, LogLevel> kLevels{{"debug", LogLevel::Debug},

@@ -13,6 +13,7 @@
 #include "server/http/http_server.hpp"
 #include "server/keys/gate.hpp"
 #include "server/log.hpp"
+#include "server/metrics/connections.hpp"
 #include "server/router.hpp"
 #include "server/routes/page_routes.hpp"
 #include "server/routes/restored_answers.hpp"
@@ -231,6 +232,7 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
                                       request.body.size(), bytes_sent(request, response));
              log_request(request, response, seconds * 1e3);
          }});
+    services.metrics.add(figures_of(server.connections()));
     std::string error;
     const int port = server.bind(error);
     if (port == 0) return fail(error);

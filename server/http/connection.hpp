@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,7 @@ namespace tinsmith::server {
 struct ConnectionTotals {
     std::atomic<std::size_t> connections{0};
     std::atomic<std::size_t> unread_bytes{0};  ///< that they hold in memory
+    std::atomic<std::uint64_t> sent_away{0};   ///< closed to make room, since the beginning
 };
 
 /// A numeric address and a port; an empty address where the system does not tell.

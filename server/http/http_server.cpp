@@ -38,7 +38,7 @@ class HttpServer::Impl {
         const Listener listener = listen_on(options_.host, options_.port);
         error = listener.error;
         if (listener.socket < 0) return 0;
-        reception_.emplace(listener.socket, reception_of(options_),
+        reception_.emplace(listener.socket, reception_of(options_), *totals_,
                            [this](Arrival arrival) { crew_->add(std::move(arrival)); });
         return listener.port;
     }
@@ -49,6 +49,8 @@ class HttpServer::Impl {
         crew_->finish();
         return fine;
     }
+
+    std::shared_ptr<const ConnectionTotals> connections() const { return totals_; }
 
     void drain() { protocol_.drain(); }
 
@@ -106,6 +108,7 @@ class HttpServer::Impl {
 
     const HttpOptions options_;
     Protocol protocol_;
+    const std::shared_ptr<ConnectionTotals> totals_ = std::make_shared<ConnectionTotals>();
     std::optional<Reception> reception_;
     std::optional<Crew> crew_;
 };
@@ -121,6 +124,10 @@ int HttpServer::bind(std::string& error) {
 
 bool HttpServer::serve() {
     return impl_->serve();
+}
+
+std::shared_ptr<const ConnectionTotals> HttpServer::connections() const {
+    return impl_->connections();
 }
 
 void HttpServer::drain() {

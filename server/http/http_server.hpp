@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "server/http/connection.hpp"
 #include "server/http_message.hpp"
 #include "server/limits.hpp"
 
@@ -69,6 +70,9 @@ class HttpServer {
 
     /// From now on each answer ends its connection, so that clients go elsewhere.
     void drain();
+
+    /// Its connections, for as long as somebody looks at them.
+    std::shared_ptr<const ConnectionTotals> connections() const;
 
     /// Closes the listening socket; drains. From any thread but not from a signal handler.
     void stop();

@@ -43,9 +43,11 @@ constexpr milliseconds kPartingAtTheEnd{100};
 
 }  // namespace
 
-Reception::Reception(int listener, ReceptionOptions options, Receive receive)
+Reception::Reception(int listener, ReceptionOptions options, ConnectionTotals& totals,
+                     Receive receive)
     : options_(options),
       receive_(std::move(receive)),
+      totals_(totals),
       listener_(listener),
       events_(::epoll_create1(EPOLL_CLOEXEC)),
       waker_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
@@ -162,10 +164,15 @@ void Reception::move_to(Place place, Wait wait) {
 bool Reception::send_one_away() {
     for (Line& each : lines_) {
         if (each.empty()) continue;
-        leave(each.begin());
+        send_away(each.begin());
         return true;
     }
     return false;
+}
+
+void Reception::send_away(Place place) {
+    leave(place);
+    ++totals_.sent_away;
 }
 
 void Reception::keep(std::unique_ptr<Connection> connection) {
@@ -244,7 +251,7 @@ void Reception::look_at_bytes(Place place, std::vector<Arrival>& arrived) {
     watch(events_, EPOLL_CTL_MOD, connection.socket(), kOnce);
     Line& heads = line(Wait::Head);
     while (totals_.unread_bytes > options_.max_unread_bytes && !heads.empty())
-        leave(heads.begin());
+        send_away(heads.begin());
 }
 
 void Reception::end_waits(std::vector<Arrival>& arrived) {

@@ -48,8 +48,8 @@ class Reception {
     /// Called on the thread of `run`, and must not take long.
     using Receive = std::function<void(Arrival)>;
 
-    /// Takes over the listening socket.
-    Reception(int listener, ReceptionOptions options, Receive receive);
+    /// Takes over the listening socket. The totals outlive it.
+    Reception(int listener, ReceptionOptions options, ConnectionTotals& totals, Receive receive);
     ~Reception();
     Reception(const Reception&) = delete;
     Reception& operator=(const Reception&) = delete;
@@ -66,8 +66,6 @@ class Reception {
     /// Closes once the client has read the last answer: an end with bytes unread resets the
     /// connection, and the client could lose the answer before it has read it. From any thread.
     void part(std::unique_ptr<Connection> connection);
-
-    const ConnectionTotals& totals() const { return totals_; }
 
   private:
     using Time = std::chrono::steady_clock::time_point;
@@ -92,6 +90,7 @@ class Reception {
     std::unique_ptr<Connection> leave(Place place);
     void move_to(Place place, Wait wait);
     bool send_one_away();
+    void send_away(Place place);
 
     void accept_all(std::vector<Arrival>& arrived);
     bool accept_one(std::vector<Arrival>& arrived);
@@ -103,7 +102,7 @@ class Reception {
 
     const ReceptionOptions options_;
     const Receive receive_;
-    ConnectionTotals totals_;
+    ConnectionTotals& totals_;
     int listener_ = -1;
     int events_ = -1;  ///< the epoll instance
     int waker_ = -1;   ///< an eventfd

@@ -68,6 +68,8 @@ TEST(Observe, FiguresFollowWhatIsAsked) {
     EXPECT_GE(grown("tinsmith_http_request_bytes_total"), static_cast<double>(kParcel.size()));
     EXPECT_EQ(after.value("tinsmith_sessions"), 1);
     EXPECT_EQ(after.value("tinsmith_http_requests_in_flight"), 1) << "the scrape itself";
+    EXPECT_GE(after.value("tinsmith_http_connections"), 1);
+    EXPECT_EQ(after.value("tinsmith_http_connections_sent_away_total"), 0);
     EXPECT_EQ(head.status, 200);
     EXPECT_EQ(server.stop(), "");
 }

@@ -24,10 +24,12 @@ class ReceptionAtWork {
   public:
     explicit ReceptionAtWork(ReceptionOptions options = {})
         : listener_(listen_on("127.0.0.1", 0)),
-          reception_(listener_.socket, options,
+          reception_(listener_.socket, options, totals,
                      [this](Arrival arrival) { take(std::move(arrival)); }),
           thread_([this] { EXPECT_TRUE(reception_.run()); }) {}
     ~ReceptionAtWork() { stop(); }
+
+    ConnectionTotals totals;
 
     int port() const { return listener_.port; }
     Reception& operator*() { return reception_; }
@@ -147,7 +149,7 @@ TEST(Reception, BoundsAllHeadsTogether) {
     const Client honest(reception.port());
     honest.send(kGet);
     EXPECT_TRUE(reception.next().connection);
-    EXPECT_LE((*reception).totals().unread_bytes, options.max_unread_bytes + 2 * 16'384);
+    EXPECT_LE(reception.totals.unread_bytes, options.max_unread_bytes + 2 * 16'384);
 }
 
 TEST(Reception, LetsInWhoAsksHoweverManySitThere) {
@@ -162,8 +164,9 @@ TEST(Reception, LetsInWhoAsksHoweverManySitThere) {
     const Arrival arrival = reception.next();
     ASSERT_TRUE(arrival.connection);
     EXPECT_EQ(arrival.connection->unread(), kGet);
-    EXPECT_LE((*reception).totals().connections, 10U);
+    EXPECT_LE(reception.totals.connections, 10U);
     EXPECT_TRUE(idle.front().is_closed());
+    EXPECT_EQ(reception.totals.sent_away, 21U);
 }
 
 TEST(Reception, LetsNobodyInWhereAllAreServed) {
@@ -205,8 +208,8 @@ TEST(Reception, ClosesAllAtItsEnd) {
     EXPECT_TRUE(waits.is_closed());
     (*reception).keep(std::move(arrival.connection));
     EXPECT_TRUE(served.is_closed());
-    EXPECT_EQ((*reception).totals().connections, 0U);
-    EXPECT_EQ((*reception).totals().unread_bytes, 0U);
+    EXPECT_EQ(reception.totals.connections, 0U);
+    EXPECT_EQ(reception.totals.unread_bytes, 0U);
 }
 
 }  // namespace
