@@ -194,7 +194,8 @@ void Reception::accept_all(std::vector<Arrival>& arrived) {
 
 /// False: there is none, or no room for one.
 bool Reception::accept_one(std::vector<Arrival>& arrived) {
-    if (totals_.connections >= options_.max_connections && !send_one_away()) return false;
+    const bool is_full = totals_.connections >= options_.max_connections;
+    if (is_full && places_.empty()) return false;
     int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
         if (!send_one_away()) {
@@ -207,6 +208,7 @@ bool Reception::accept_one(std::vector<Arrival>& arrived) {
         failed_ = errno == EBADF || errno == EINVAL || errno == ENOTSOCK;
         return errno == ECONNABORTED || errno == EINTR;
     }
+    if (is_full) send_one_away();
     const Place place = enter(std::make_unique<Connection>(socket, totals_), Wait::First);
     watch(events_, EPOLL_CTL_ADD, socket, kNotYet);
     look_at(place, arrived);
