@@ -149,6 +149,16 @@ bool Reader::take_name(std::string_view name) {
     Frame& frame = frames_[depth_ - 1];
     frame.name = cut(name, kLongestName);
     frame.started = true;
+    if (!frame.names.add(name)) {
+        fault("MEMBER_REPEATED", quoted(name) + " is here more than once; give it once.");
+        return going();  // nobody takes its value
+    }
+    if (frame.names.size() > kMostMembers) {
+        stop(FaultKind::TooLarge, {"TOO_MANY_MEMBERS",
+                                   "An object has at most " + std::to_string(kMostMembers) +
+                                       " members; no more are taken.",
+                                   pointer()});
+    }
     named_ = frame.container == nullptr ? nullptr : frame.container->member(*this, name);
     return going();
 }
@@ -169,6 +179,7 @@ bool Reader::open(bool is_array) {
     frame.is_array = is_array;
     frame.started = false;
     frame.index = 0;
+    frame.names.clear();
     return going();
 }
 
@@ -178,9 +189,13 @@ bool Reader::close() {
     return going();
 }
 
-void Reader::overflow(std::string detail) {
-    next_value();  // only to step on to its place
-    stop(FaultKind::Invalid, {"NUMBER_OUT_OF_RANGE", std::move(detail), pointer()});
+void Reader::refuse_next(bool is_name, std::string code, std::string detail) {
+    if (is_name) {
+        frames_[depth_ - 1].started = false;
+    } else {
+        next_value();  // only to step on to its place
+    }
+    stop(FaultKind::Invalid, {std::move(code), std::move(detail), pointer()});
 }
 
 }  // namespace tinsmith::api::json

@@ -9,12 +9,15 @@
 
 #include "api/fault.hpp"
 #include "api/formats/fault_log.hpp"
+#include "api/formats/json_tokens.hpp"
 #include "api/formats/read_limits.hpp"
 
 /// Reading JSON as it streams by, with no document tree. A body is described by what is expected
 /// where: a `Value` takes one value, a `Container` says which Value takes each member or element.
 /// The `Reader` between parser and expectations knows the place (a JSON Pointer at any time),
-/// bounds the depth and collects the faults; so an expectation is a few lines that store or object.
+/// bounds the depth, refuses a name that an object has already, wherever the object is, and
+/// collects the faults; so an expectation is a few lines that store or object. Memory beside what
+/// expectations keep: at most thrice the body, and less than 20 MiB where that is less.
 namespace tinsmith::api::json {
 
 /// Deepest nesting of arrays and objects. GeoJSON needs 8; the rest is for properties.
@@ -25,7 +28,9 @@ struct Scalar {
     enum class Kind { Null, Boolean, Natural, Negative, Real, Text };
     Kind kind = Kind::Null;
     bool boolean = false;
-    double number = 0.0;        ///< of Natural, Negative and Real
+    /// Of Natural, Negative and Real. What is nearer to zero than any double is the double nearest
+    /// to zero, so that it is no zero.
+    double number = 0.0;
     std::uint64_t natural = 0;  ///< of Natural: exact
     std::int64_t negative = 0;  ///< of Negative: exact
     std::string_view text;      ///< of Text: the characters; of Real: the number as written
@@ -101,8 +106,10 @@ class Reader {
     bool open(bool is_array);
     bool take_name(std::string_view name);
     bool close();
-    /// The next value is a number that no double holds: the parser ends there.
-    void overflow(std::string detail);
+    /// What comes next is not taken, and the parser ends there: a value, or a name of the object
+    /// that is open, which then is the place.
+    void refuse_next(bool is_name, std::string code, std::string detail);
+    bool is_in_object() const { return depth_ > 0 && !frames_[depth_ - 1].is_array; }
 
   private:
     struct Frame {
@@ -111,6 +118,7 @@ class Reader {
         bool started = false;     ///< a first member or element has begun
         std::uint64_t index = 0;  ///< of an array
         std::string name;         ///< of an object
+        NameSet names;            ///< of an object, so far
     };
 
     Value* next_value();

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one file that knows the JSON library's parser: its events become the reader's.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -42,6 +46,30 @@ std::string place(std::string_view body, std::size_t read) {
            " (byte " + std::to_string(at + 1) + ")";
 }
 
+/// What people's programs write where they have no number.
+std::string hint_at(std::string_view body, std::size_t read) {
+    const auto is_letter = [&](std::size_t i) {
+        return i < body.size() &&
+               ((body[i] >= 'a' && body[i] <= 'z') || (body[i] >= 'A' && body[i] <= 'Z'));
+    };
+    constexpr std::size_t kLongestWord = 10;
+    std::size_t begin = read == 0 ? 0 : read - 1;
+    while (begin > 0 && read - begin < kLongestWord && is_letter(begin - 1))
+        --begin;
+    std::string word;
+    for (std::size_t i = begin; word.size() < kLongestWord && is_letter(i); ++i)
+        word += static_cast<char>(body[i] | 0x20);
+    constexpr std::array<std::string_view, 3> kNoNumbers{"nan", "inf", "infinity"};
+    if (std::find(kNoNumbers.begin(), kNoNumbers.end(), word) == kNoNumbers.end()) return {};
+    return ". JSON has no NaN and no Infinity: give a number, or null where that is taken";
+}
+
+/// Where the parser is, and whether it has asked for more than there is.
+struct Place {
+    const char* at = nullptr;
+    bool has_ended = false;
+};
+
 /// Goes through the body and leaves behind where it is.
 class Walker {
   public:
@@ -51,10 +79,10 @@ class Walker {
     using pointer = const char*;
     using reference = const char&;
 
-    Walker(const char* at, const char** seen) : at_(at), seen_(seen) {}
+    Walker(const char* at, Place* place) : at_(at), place_(place) {}
     reference operator*() const { return *at_; }
     Walker& operator++() {
-        *seen_ = ++at_;
+        place_->at = ++at_;
         return *this;
     }
     Walker operator++(int) {
@@ -62,19 +90,27 @@ class Walker {
         ++*this;
         return before;
     }
-    friend bool operator==(const Walker& a, const Walker& b) { return a.at_ == b.at_; }
+    friend bool operator==(const Walker& a, const Walker& b) {
+        if (a.at_ != b.at_) return false;
+        a.place_->has_ended = true;  // only the end is ever compared with
+        return true;
+    }
 
   private:
     const char* at_;
-    const char** seen_;
+    Place* place_;
 };
 
 class Events {
   public:
-    Events(std::string_view body, Reader& reader) : body_(body), reader_(reader) {}
+    /// The parser is given the body up to the token that is too long, if there is one.
+    Events(std::string_view body, std::optional<LongToken> too_long, Reader& reader)
+        : body_(body), too_long_(too_long), reader_(reader) {
+        place_.at = body.data();
+    }
 
-    /// Where the parser is, for `Walker`.
-    const char** parser_place() { return &at_; }
+    /// For `Walker`.
+    Place* parser_place() { return &place_; }
 
     bool null() { return reader_.take_scalar({}); }
     bool boolean(bool value) {
@@ -101,6 +137,8 @@ class Events {
         Scalar scalar;
         scalar.kind = Scalar::Kind::Real;
         scalar.number = value;
+        if (value == 0.0 && is_written_nonzero(written))
+            scalar.number = std::copysign(std::numeric_limits<double>::denorm_min(), value);
         scalar.text = written;
         return reader_.take_scalar(scalar) && goes_on();
     }
@@ -118,9 +156,15 @@ class Events {
     bool end_array() { return reader_.close(); }
 
     bool parse_error(std::size_t read, const std::string&, const nlohmann::json::exception& error) {
-        const std::string why = reason(error.what());
+        if (too_long_ && place_.has_ended) {
+            refuse_too_long();
+            return false;
+        }
+        const std::string why = reason(error.what()) + hint_at(body_, read);
         if (error.id == kNumberOverflow) {
-            reader_.overflow("At " + place(body_, read) + ": " + why + "; no double is as large.");
+            reader_.refuse_next(
+                false, "NUMBER_OUT_OF_RANGE",
+                "At " + place(body_, read) + ": " + why + "; no double is as large.");
         } else {
             reader_.stop(
                 FaultKind::Syntax,
@@ -134,13 +178,31 @@ class Events {
     bool goes_on() {
         constexpr std::size_t kAskEvery = 4096;
         if (!reader_.is_watched() || ++asked_ % kAskEvery != 0) return true;
-        const auto read = static_cast<double>(at_ - body_.data());
+        const auto read = static_cast<double>(place_.at - body_.data());
         return reader_.has_come_to(read / static_cast<double>(body_.size()));
     }
 
+    void refuse_too_long() {
+        const std::size_t begin = too_long_->begin;
+        const std::string where = "At " + place(body_, begin + 1) + " begins a ";
+        if (!too_long_->is_text) {
+            reader_.refuse_next(false, "NUMBER_TOO_LONG",
+                                where + "number of more than " + std::to_string(kLongestNumber) +
+                                    " characters: 17 digits say all that a double holds.");
+            return;
+        }
+        const std::size_t before = body_.substr(0, begin).find_last_not_of(" \t\r\n");
+        const bool is_value = before != body_.npos && body_[before] == ':';
+        const bool is_name = reader_.is_in_object() && !is_value;
+        reader_.refuse_next(is_name, "TEXT_TOO_LONG",
+                            where + (is_name ? "name" : "text") + " of more than " +
+                                std::to_string(kLongestText) + " bytes: shorten it.");
+    }
+
     std::string_view body_;
+    std::optional<LongToken> too_long_;
     Reader& reader_;
-    const char* at_ = body_.data();
+    Place place_;
     std::size_t asked_ = 0;
 };
 
@@ -159,8 +221,9 @@ void read(std::string_view body, Reader& reader) {
                                         ""});
         return;
     }
-    Events events(body, reader);
-    const char* const end = body.data() + body.size();
+    const auto too_long = first_long_token(body);
+    Events events(body, too_long, reader);
+    const char* const end = body.data() + (too_long ? too_long->begin : body.size());
     nlohmann::json::sax_parse(Walker(body.data(), events.parser_place()),
                               Walker(end, events.parser_place()), &events);
 }

@@ -5,15 +5,13 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "api/formats/json_reader.hpp"
 
 namespace tinsmith::api::json {
 
 /// Keeps an object, whatever is in it, as compact JSON text: members in their order, real numbers
-/// as they were written. A name given twice in one object is a fault. null is kept as "{}".
-/// Memory: the text, and 16 bytes for each name of the objects that are open.
+/// as they were written. null is kept as "{}".
 class ObjectText : public Value, public Container {
   public:
     /// Requires: the text stays where it is until the object has been read.
@@ -30,25 +28,17 @@ class ObjectText : public Value, public Container {
     std::string_view expected() const override { return "an object or null"; }
 
   private:
-    /// A name in the text, with its quotes.
-    struct Slice {
-        std::size_t begin;
-        std::size_t length;
-    };
     struct Level {
         bool is_array = false;
         bool empty = true;
-        std::size_t first_name = 0;  ///< index into names_: this object's are from here on
     };
 
     Container* open(bool is_array);
     void separate();
-    void refuse_repeated_names(Reader& reader, std::size_t first_name);
 
     std::string* out_ = nullptr;
     std::array<Level, kMaxDepth> levels_;
     std::size_t depth_ = 0;
-    std::vector<Slice> names_;  ///< of all objects that are open
 };
 
 /// Appends a text as JSON, with quotes. Requires: UTF-8.

@@ -83,10 +83,6 @@ Container* Object::object(Reader& reader) {
 Value* Object::member(Reader& reader, std::string_view name) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
         if (members_[i].name != name) continue;
-        if ((seen_ >> i & 1U) != 0) {
-            reader.fault("MEMBER_REPEATED", quoted(name) + " is here twice; give it once.");
-            return nullptr;
-        }
         seen_ |= 1U << i;
         return members_[i].value;
     }

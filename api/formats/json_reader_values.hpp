@@ -50,7 +50,7 @@ struct Member {
     bool required = false;
 };
 
-/// An object with known members, each at most once. Unknown ones are refused by name, or passed
+/// An object with known members. Unknown ones are refused by name, or passed
 /// over when the object is not of our making. Used again for each object of its sort.
 class Object : public Value, public Container {
   public:

@@ -83,6 +83,12 @@ TEST(JsonReader, NamesWhatIsWrongAndWhere) {
         {R"({"name": "a", "data": 7})", FaultKind::Invalid, "WRONG_TYPE", "/data"},
         {R"({"name": "a", "data": {"b": [{"c": 1, "d": 2, "c": 3}]}})", FaultKind::Invalid,
          "MEMBER_REPEATED", "/data/b/0/c"},
+        {R"({"name": "a", "count": 1e-999})", FaultKind::Invalid, "NUMBER_OUT_OF_RANGE", "/count"},
+        {R"({"name": "a", "count": 9007199254740993.0})", FaultKind::Invalid, "NUMBER_OUT_OF_RANGE",
+         "/count"},
+        {R"({"name": "a", "count": 18446744073709551617})", FaultKind::Invalid,
+         "NUMBER_OUT_OF_RANGE", "/count"},
+        {R"({"name": "a", "count": "NaN"})", FaultKind::Invalid, "WRONG_TYPE", "/count"},
     };
     for (const BadBody& bad : cases) {
         SCOPED_TRACE(bad.body);
@@ -107,7 +113,7 @@ TEST(JsonReader, DetailsArePrintableWhateverTheBodyHolds) {
     ASSERT_EQ(out.faults.size(), 1U);
     for (const char c : out.faults[0].detail)
         EXPECT_TRUE(c >= ' ' && c <= '~');
-    const Outcome long_token = read_sample("{\"name\": \"" + std::string(100000, 'x'));
+    const Outcome long_token = read_sample("{\"name\": \"" + std::string(kLongestText, 'x'));
     EXPECT_LT(long_token.faults.at(0).detail.size(), 500U);
 }
 
@@ -148,6 +154,86 @@ TEST(JsonReader, LongNamesAreCutBetweenCharacters) {
     ASSERT_EQ(out.faults.size(), 1U);
     EXPECT_EQ(out.faults[0].pointer, "/" + name.substr(0, 200));
     EXPECT_NE(out.faults[0].detail.find("\"" + name.substr(0, 60) + "...\""), std::string::npos);
+}
+
+TEST(JsonReader, NamesAreTakenOnceInEveryObjectAlsoWhereNobodyLooks) {
+    struct Nothing : Value {
+        Container* object(Reader&) override { return nullptr; }
+        std::string_view expected() const override { return "an object"; }
+    } nothing;
+    const std::string many = [] {
+        std::string text = R"({"a": {"b": {"x": 1}, "c": [{"x": 1}, {"x": 2}]})";
+        for (int i = 0; i < 200; ++i)
+            text += ", \"m" + std::to_string(i) + "\": " + std::to_string(i);
+        return text;
+    }();
+    const auto faults_of = [&](const std::string& body) {
+        Reader reader(nothing, {});
+        read(body, reader);
+        if (reader.log().empty()) return Faults{};
+        return std::move(reader.log()).refusal<int>().faults();
+    };
+    EXPECT_TRUE(faults_of(many + "}").empty());
+    const Faults again = faults_of(many + R"(, "m5": 1, "m150": {"a": 1, "\u0061": 2}})");
+    ASSERT_EQ(again.size(), 3U);
+    EXPECT_EQ(again[0].pointer, "/m5");
+    EXPECT_EQ(again[1].pointer, "/m150");
+    EXPECT_EQ(again[2].pointer, "/m150/a") << "names are what they say, not how they are written";
+    for (const Fault& fault : again)
+        EXPECT_EQ(fault.code, "MEMBER_REPEATED");
+    std::string wide = "{\"m\": 0";
+    for (std::size_t i = 1; i < kMostMembers; ++i)
+        wide += ",\"" + std::to_string(i) + "\":0";
+    EXPECT_TRUE(faults_of(wide + "}").empty());
+    const Faults wider = faults_of(wide + R"(, "one more": 0})");
+    ASSERT_EQ(wider.size(), 1U);
+    EXPECT_EQ(wider[0].code, "TOO_MANY_MEMBERS");
+    EXPECT_EQ(wider[0].pointer, "/one more");
+}
+
+TEST(JsonReader, LongTextsAndNumbersAreRefusedByTheirPlace) {
+    const std::string text(kLongestText, 'x');
+    const std::string number(kLongestNumber, '1');
+    const BadBody cases[] = {
+        {R"({"name": "a", "data": {"a": [1, ")" + text + "y\"]}}", FaultKind::Invalid,
+         "TEXT_TOO_LONG", "/data/a/1"},
+        {R"({"name": "a", "data": {"a": ")" + text + "y", FaultKind::Invalid, "TEXT_TOO_LONG",
+         "/data/a"},
+        {R"({"name": "a", "data": {"a": 1, ")" + text + "y\": 1}}", FaultKind::Invalid,
+         "TEXT_TOO_LONG", "/data"},
+        {"\"" + text + "y\"", FaultKind::Invalid, "TEXT_TOO_LONG", ""},
+        {R"({"name": "a", "data": {"a": [-0.)" + number + "]}}", FaultKind::Invalid,
+         "NUMBER_TOO_LONG", "/data/a/0"},
+        {"1" + number, FaultKind::Invalid, "NUMBER_TOO_LONG", ""},
+        {R"({"name": } ")" + text + "y\"", FaultKind::Syntax, "JSON_SYNTAX", ""},
+    };
+    for (const BadBody& bad : cases) {
+        SCOPED_TRACE(bad.body.substr(0, 40));
+        const Outcome out = read_sample(bad.body);
+        ASSERT_EQ(out.faults.size(), 1U);
+        EXPECT_EQ(out.kind, bad.kind);
+        EXPECT_EQ(out.faults[0].code, bad.code) << out.faults[0].detail;
+        EXPECT_EQ(out.faults[0].pointer, bad.pointer);
+        EXPECT_LT(out.faults[0].detail.size(), 500U);
+    }
+    const Outcome told = read_sample("{\"name\": \"a\",\n \"count\": 1" + number + "}");
+    ASSERT_EQ(told.faults.size(), 1U);
+    EXPECT_NE(told.faults[0].detail.find("line 2, column 11"), std::string::npos)
+        << told.faults[0].detail;
+    // As long as they may be, and with quotes within.
+    EXPECT_TRUE(read_sample(R"({"name": "a", "data": {"a": ")" + text.substr(2) + R"(\"", ")" +
+                            text + "\": 0." + number.substr(2) + "}}")
+                    .faults.empty());
+}
+
+TEST(JsonReader, WhatPeopleWriteForNoNumberIsNamed) {
+    for (const char* word : {"NaN", "nan", "Infinity", "-Infinity", "inf", "-inf"}) {
+        const Outcome out = read_sample(R"({"name": "a", "count": )" + std::string(word) + "}");
+        ASSERT_EQ(out.faults.size(), 1U) << word;
+        EXPECT_NE(out.faults[0].detail.find("no NaN and no Infinity"), std::string::npos)
+            << word << ": " << out.faults[0].detail;
+    }
+    EXPECT_EQ(read_sample(R"({"name": nul})").faults.at(0).detail.find("NaN"), std::string::npos);
 }
 
 TEST(JsonReader, KeepsPropertiesAsText) {
