@@ -11,10 +11,22 @@
 
 namespace tinsmith::bench {
 
-double now_ms() {
+namespace {
+
+double clock_ms(clockid_t clock) {
     timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    clock_gettime(clock, &now);
     return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+}  // namespace
+
+double now_ms() {
+    return clock_ms(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double wall_ms() {
+    return clock_ms(CLOCK_MONOTONIC);
 }
 
 double median(std::vector<double> values) {

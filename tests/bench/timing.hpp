@@ -9,6 +9,8 @@ namespace tinsmith::bench {
 /// The thread's processor time: on a machine shared with others it is steadier than the wall's, and
 /// on an idle one the same, for nothing measured here waits.
 double now_ms();
+/// The wall's clock, for what several threads do, or another process.
+double wall_ms();
 double median(std::vector<double> values);
 double least(const std::vector<double>& values);
 
