@@ -100,6 +100,38 @@ void quantize_positions(draco::Encoder& encoder, const Quantization& quantizatio
     encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION, exact);
 }
 
+/// Vertices and triangles as EdgeBreaker has encoded them, by the head of its bytes. Draco can
+/// count them itself, after the encoding and by walking through the mesh once more: a twentieth of
+/// the time. What is read here is right while all attributes share one connectivity, as they do at
+/// this speed.
+///
+///     "DRACO" | major minor | type method | flags, 16 bits | traversal | vertices | triangles
+///                                                                        7 bits a byte, low first
+class EncodedCounts {
+  public:
+    explicit EncodedCounts(std::string_view bytes) : bytes_(bytes) {
+        vertices = next();
+        triangles = next();
+    }
+
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+
+  private:
+    std::size_t next() {
+        std::size_t value = 0;
+        for (unsigned shift = 0; at_ < bytes_.size() && shift < 35; shift += 7) {
+            const auto byte = static_cast<unsigned char>(bytes_[at_++]);
+            value |= static_cast<std::size_t>(byte & 0x7FU) << shift;
+            if ((byte & 0x80U) == 0) break;
+        }
+        return value;
+    }
+
+    std::string_view bytes_;
+    std::size_t at_ = 12;
+};
+
 }  // namespace
 
 std::variant<DracoBytes, EncodeError> encode_draco(const DracoPiece& piece) {
@@ -130,14 +162,14 @@ std::variant<DracoBytes, EncodeError> encode_draco(const DracoPiece& piece) {
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
     quantize_positions(encoder, quantization, piece.exponent);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, kDracoNormalBits);
-    encoder.SetTrackEncodedProperties(true);  // or num_encoded_points() stays 0
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeMeshToBuffer(mesh, &buffer);
     if (!status.ok()) return EncodeError{EncodeFault::Codec, "Draco: " + status.error_msg_string()};
     result.bytes.assign(buffer.data(), buffer.size());
     result.position_bits = quantization.bits;
-    result.points = encoder.num_encoded_points();
-    result.triangles = encoder.num_encoded_faces();
+    const EncodedCounts counts(result.bytes);
+    result.points = counts.vertices;
+    result.triangles = counts.triangles;
     return result;
 }
 

@@ -112,7 +112,7 @@ std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const Gl
             ++result.primitives;
             triangles += primitive.draco     ? primitive.draco->triangles
                          : primitive.meshopt ? primitive.meshopt->indices.count / 3
-                                             : primitive.indices.size() / 3;
+                                             : primitive.plain_indices().size() / 3;
             if (primitive.draco)
                 result.bits = std::max(result.bits, primitive.draco->position_bits);
         }
@@ -153,11 +153,11 @@ std::variant<std::vector<GlbNode>, EncodeError> compressed(const SceneInput& inp
 std::vector<GlbNode> plain(const SceneInput& input, const Box<double>& bounds, GltfResult& result) {
     result.origin = whole_metre_middle(bounds);
     const double unit = input.options.unit_to_metre;
-    std::vector<std::array<float, 3>> positions;
-    positions.reserve(input.mesh.vertices.size());
-    for (const core::Point3& vertex : input.mesh.vertices) {
+    std::vector<std::array<float, 3>> positions(input.mesh.vertices.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const core::Point3& vertex = input.mesh.vertices[i];
         const std::array<double, 3> metres{vertex.x * unit, vertex.y * unit, vertex.z * unit};
-        std::array<float, 3>& position = positions.emplace_back();
+        std::array<float, 3>& position = positions[i];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             position[axis] = static_cast<float>(metres[axis] - result.origin[axis]);
             const double error = result.origin[axis] + double{position[axis]} - metres[axis];
@@ -184,7 +184,7 @@ std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const Gl
         return *std::move(fault);
     const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre);
     std::vector<std::array<float, 3>> normals;
-    if (options.normals) normals = smooth_normals(mesh);
+    if (options.normals) normals = smooth_normals(mesh, options.up);
     // Where no polygon has an inside there is nothing to tell apart.
     const bool has_regions = regions != nullptr && !regions->features.empty();
     std::vector<SceneGroup> groups;

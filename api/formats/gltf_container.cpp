@@ -13,9 +13,10 @@ namespace {
 using nlohmann::json;
 
 /// A property's view begins at a multiple of 8, as EXT_structural_metadata wants it.
-std::size_t add_metadata_view(json& model, GltfBytes& bytes, const void* data, std::size_t size) {
-    const std::size_t offset = bytes.append(data, size, 8);
-    model["bufferViews"].push_back({{"buffer", 0}, {"byteLength", size}, {"byteOffset", offset}});
+std::size_t add_metadata_view(json& model, GltfBytes& bytes, std::string_view data) {
+    const std::size_t offset = bytes.append(data, 8);
+    model["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteLength", data.size()}, {"byteOffset", offset}});
     return model["bufferViews"].size() - 1;
 }
 
@@ -41,11 +42,10 @@ void add_metadata(json& model, GltfBytes& bytes, const PropertyTable& table) {
     for (const PropertyColumn& column : table.columns) {
         properties[column.id] = class_property(column);
         json& place = columns[column.id];
-        place["values"] =
-            add_metadata_view(model, bytes, column.values.data(), column.values.size());
+        place["values"] = add_metadata_view(model, bytes, column.values);
         if (!column.is_text) continue;
-        place["stringOffsets"] = add_metadata_view(model, bytes, column.offsets.data(),
-                                                   column.offsets.size() * sizeof(std::uint32_t));
+        place["stringOffsets"] =
+            add_metadata_view(model, bytes, bytes_of(column.offsets.data(), column.offsets.size()));
         place["stringOffsetType"] = "UINT32";
     }
     const json region{{"name", "Region"}, {"properties", std::move(properties)}};
@@ -104,39 +104,54 @@ void append_word(std::string& out, std::size_t word) {
         out.push_back(static_cast<char>(word >> shift & 0xFF));
 }
 
-void append_chunk(std::string& out, std::string_view type, std::string_view data, char padding) {
-    const std::size_t padded = (data.size() + 3) / 4 * 4;
-    append_word(out, padded);
-    out += type;
-    out += data;
-    out.append(padded - data.size(), padding);
+std::size_t padded(std::size_t size) {
+    return (size + 3) / 4 * 4;
 }
 
 constexpr std::size_t kHeads = 28;  // of a GLB and its two chunks
 
-std::string glb_of(const std::string& text, const std::string& bytes) {
-    const std::size_t size = kHeads + (text.size() + 3) / 4 * 4 + (bytes.size() + 3) / 4 * 4;
+std::string glb_of(const std::string& text, const GltfBytes& bytes) {
+    const std::size_t size = kHeads + padded(text.size()) + padded(bytes.size());
     std::string out;
     out.reserve(size);
     out += "glTF";
     append_word(out, 2);
     append_word(out, size);
-    append_chunk(out, "JSON", text, ' ');
-    append_chunk(out, std::string_view("BIN\0", 4), bytes, '\0');
+    append_word(out, padded(text.size()));
+    out += "JSON";
+    out += text;
+    out.append(padded(text.size()) - text.size(), ' ');
+    append_word(out, padded(bytes.size()));
+    out += std::string_view("BIN\0", 4);
+    bytes.write_to(out);
+    out.append(size - out.size(), '\0');
     return out;
 }
 
 }  // namespace
 
-std::size_t GltfBytes::append(const void* data, std::size_t size, std::size_t alignment) {
-    bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment, '\0');
-    const std::size_t offset = bytes_.size();
-    bytes_.append(static_cast<const char*>(data), size);
+std::size_t GltfBytes::append(std::string_view bytes, std::size_t alignment) {
+    const std::size_t offset = (size_ + alignment - 1) / alignment * alignment;
+    parts_.push_back({offset, bytes});
+    size_ = offset + bytes.size();
     return offset;
 }
 
+std::size_t GltfBytes::append_own(std::string bytes, std::size_t alignment) {
+    return append(own_.emplace_back(std::move(bytes)), alignment);
+}
+
+void GltfBytes::write_to(std::string& out) const {
+    const std::size_t begin = out.size();
+    out.reserve(begin + size_);
+    for (const Part& part : parts_) {
+        out.append(begin + part.offset - out.size(), '\0');
+        out += part.bytes;
+    }
+}
+
 std::size_t GltfBytes::append_compressed(std::size_t view, const MeshoptView& from) {
-    const std::size_t offset = append(from.bytes.data(), from.bytes.size());
+    const std::size_t offset = append(from.bytes);
     compressed_.push_back({view, offset, from.bytes.size(), from.count, from.stride,
                            from.is_triangles, from.is_exponential});
     const std::size_t place = (fallback_ + 3) / 4 * 4;
@@ -154,9 +169,12 @@ std::variant<std::string, EncodeError> pack_gltf(const std::string& model, const
         document["scenes"][0]["extras"]["regions"] = json::parse(scene.regions, nullptr, false);
     tell_compressed(document, bytes);
     mend_lists(document);
-    json buffer{{"byteLength", bytes.bytes().size()}};
-    if (container == GltfContainer::Json)
-        buffer["uri"] = "data:application/octet-stream;base64," + base64(bytes.bytes());
+    json buffer{{"byteLength", bytes.size()}};
+    if (container == GltfContainer::Json) {
+        std::string joined;
+        bytes.write_to(joined);
+        buffer["uri"] = "data:application/octet-stream;base64," + base64(joined);
+    }
     document["buffers"] = json::array({std::move(buffer)});
     if (bytes.fallback_bytes() > 0) {
         document["buffers"].push_back(
@@ -166,11 +184,11 @@ std::variant<std::string, EncodeError> pack_gltf(const std::string& model, const
     std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
     if (container == GltfContainer::Json) return text;
     // The lengths in a GLB are 32 bits.
-    if (kHeads + 8 + text.size() + bytes.bytes().size() > std::numeric_limits<std::uint32_t>::max())
+    if (kHeads + 8 + text.size() + bytes.size() > std::numeric_limits<std::uint32_t>::max())
         return EncodeError{EncodeFault::TooLarge,
                            "the mesh passes the 4 GiB that a GLB can hold; ask for a smaller bbox "
                            "or for compression=draco"};
-    return glb_of(text, bytes.bytes());
+    return glb_of(text, bytes);
 }
 
 }  // namespace tinsmith::api

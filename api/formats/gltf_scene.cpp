@@ -12,34 +12,41 @@
 namespace tinsmith::api {
 namespace {
 
-template <typename T>
-void append(std::vector<T>& to, const std::array<T, 3>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
-
-/// Fills the plain arrays. `position_of` gives a mesh vertex's float32 position in session axes.
-template <std::size_t N, typename PositionOf>
-GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
-                             const Piece<N>& piece, const PositionOf& position_of) {
+/// Positions of `count` vertices: `vertex_of` gives
+/// a vertex of the mesh, `position_of` that one's float32 position in session axes.
+template <std::size_t N, typename VertexOf, typename PositionOf>
+GlbPrimitive plain_positions(const SceneInput& input, const SceneGroup* group, std::size_t count,
+                             const VertexOf& vertex_of, const PositionOf& position_of) {
     GlbPrimitive primitive;
     if (group != nullptr) {
         primitive.features = group->features;
         primitive.polygons = group->polygons;
     }
     primitive.mode = N == 2 ? GlbMode::Lines : GlbMode::Triangles;
-    const bool with_normals = N == 3 && !input.normals.empty();
-    primitive.positions.reserve(piece.vertices.size() * 3);
-    if (with_normals) primitive.normals.reserve(piece.vertices.size() * 3);
-    Box<double> box;
-    for (const std::uint32_t vertex : piece.vertices) {
-        const std::array<float, 3> position = to_axes(position_of(vertex), input.options.up);
-        box.add({position[0], position[1], position[2]});
-        append(primitive.positions, position);
-        if (with_normals)
-            append(primitive.normals, to_axes(input.normals[vertex], input.options.up));
+    primitive.positions.resize(count * 3);
+    Box<float> box;
+    float* to = primitive.positions.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::array<float, 3> position = to_axes(position_of(vertex_of(i)), input.options.up);
+        box.add(position);
+        to = std::copy(position.begin(), position.end(), to);
     }
-    primitive.low = box.low;
-    primitive.high = box.high;
+    std::copy(box.low.begin(), box.low.end(), primitive.low.begin());
+    std::copy(box.high.begin(), box.high.end(), primitive.high.begin());
+    return primitive;
+}
+
+template <std::size_t N, typename PositionOf>
+GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
+                             const Piece<N>& piece, const PositionOf& position_of) {
+    GlbPrimitive primitive = plain_positions<N>(
+        input, group, piece.vertices.size(), [&](std::size_t i) { return piece.vertices[i]; },
+        position_of);
+    if (N == 3 && !input.normals.empty()) {
+        primitive.normals.reserve(piece.vertices.size());
+        for (const std::uint32_t vertex : piece.vertices)
+            primitive.normals.push_back(input.normals[vertex]);
+    }
     primitive.indices.reserve(piece.corners.size() * N);
     for (const Corners<N>& corners : piece.corners)
         primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
@@ -158,8 +165,7 @@ class GridSceneBuilder {
         for (const std::uint32_t vertex : piece.vertices) {
             made.positions.push_back(to_axes(local(vertex, shift), up));
             made.box.add(made.positions.back());
-            if (!input_.normals.empty())
-                made.normals.push_back(to_axes(input_.normals[vertex], up));
+            if (!input_.normals.empty()) made.normals.push_back(input_.normals[vertex]);
         }
         return made;
     }
@@ -245,36 +251,6 @@ class GridSceneBuilder {
 
 }  // namespace
 
-std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh) {
-    std::vector<std::array<double, 3>> sums(mesh.vertices.size());
-    for (const auto& corners : mesh.triangles) {
-        const core::Point3& a = mesh.vertices[corners[0]];
-        const core::Point3& b = mesh.vertices[corners[1]];
-        const core::Point3& c = mesh.vertices[corners[2]];
-        const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
-        const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-        // The cross product's length is twice the area: the weight comes by itself.
-        const std::array<double, 3> normal{uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
-        for (const std::uint32_t vertex : corners) {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                sums[vertex][axis] += normal[axis];
-        }
-    }
-    std::vector<std::array<float, 3>> normals;
-    normals.reserve(sums.size());
-    for (const auto& [x, y, z] : sums) {
-        const double length = std::sqrt(x * x + y * y + z * z);
-        // Triangles of a session are never flat in plan; only rounding to zero comes here.
-        if (!(length > 0.0) || !std::isfinite(length)) {
-            normals.push_back({0.0F, 0.0F, 1.0F});
-            continue;
-        }
-        normals.push_back({static_cast<float>(x / length), static_cast<float>(y / length),
-                           static_cast<float>(z / length)});
-    }
-    return normals;
-}
-
 std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& input,
                                                            const PositionGrid& grid,
                                                            std::span<const GridPoint> points) {
@@ -286,8 +262,13 @@ GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
     const auto position_of = [&](std::uint32_t vertex) { return positions[vertex]; };
     GlbNode node{"terrain", to_axes(origin, input.options.up), {}};
     if (input.groups.empty()) {
-        const Piece<3> whole{all_of(positions.size()), input.mesh.triangles};
-        node.primitives.push_back(plain_primitive(input, nullptr, whole, position_of));
+        const auto itself = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
+        node.primitives.push_back(
+            plain_positions<3>(input, nullptr, positions.size(), itself, position_of));
+        static_assert(sizeof(input.mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
+        node.primitives.back().shared_normals = input.normals;
+        node.primitives.back().shared_indices = {input.mesh.triangles[0].data(),
+                                                 input.mesh.triangles.size() * 3};
     }
     PieceCutter cutter(positions.size());
     for (const SceneGroup& group : input.groups) {

@@ -23,9 +23,9 @@ std::array<T, 3> to_axes(const std::array<T, 3>& v, UpAxis up) {
     return {v[0], v[2], T{0} - v[1]};  // 0 - 0 is 0, where -0 would be minus zero
 }
 
-/// A direction for each vertex, in session axes, of length 1: the sum of its triangles' normals,
+/// A direction for each vertex, in the file's axes, of length 1: the sum of its triangles' normals,
 /// each weighted by its area. (0, 0, 1) where that is zero. Cost: one pass.
-std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh);
+std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh, UpAxis up);
 
 /// Triangles that lie in the same polygons.
 struct SceneGroup {

@@ -64,10 +64,14 @@ class ModelBuilder {
     GltfBytes take_bytes() { return std::move(bytes_); }
 
   private:
-    int add_view(const void* data, std::size_t size, int target, std::size_t stride = 0) {
+    int add_view(std::string_view bytes, int target) {
+        return add_view(bytes_.append(bytes), bytes.size(), target, 0);
+    }
+
+    int add_view(std::size_t offset, std::size_t size, int target, std::size_t stride) {
         tinygltf::BufferView view;
         view.buffer = 0;
-        view.byteOffset = bytes_.append(data, size);
+        view.byteOffset = offset;
         view.byteLength = size;
         view.byteStride = stride;
         view.target = target;
@@ -110,10 +114,9 @@ class ModelBuilder {
                             count);
     }
 
-    int add_plain_vectors(const std::vector<float>& values) {
-        const int view =
-            add_view(values.data(), values.size() * sizeof(float), TINYGLTF_TARGET_ARRAY_BUFFER);
-        return add_vectors(view, values.size() / 3);
+    int add_plain_vectors(std::string_view bytes) {
+        return add_vectors(add_view(bytes, TINYGLTF_TARGET_ARRAY_BUFFER),
+                           bytes.size() / (3 * sizeof(float)));
     }
 
     static std::string feature_attribute(std::size_t i) {
@@ -121,24 +124,29 @@ class ModelBuilder {
     }
 
     void fill_plain(const GlbPrimitive& from, tinygltf::Primitive& to) {
-        to.attributes["POSITION"] = add_plain_vectors(from.positions);
-        if (!from.normals.empty()) to.attributes["NORMAL"] = add_plain_vectors(from.normals);
+        to.attributes["POSITION"] =
+            add_plain_vectors(bytes_of(from.positions.data(), from.positions.size()));
+        const auto normals = from.plain_normals();
+        if (!normals.empty())
+            to.attributes["NORMAL"] = add_plain_vectors(bytes_of(normals.data(), normals.size()));
         const std::size_t vertices = from.positions.size() / 3;
         for (std::size_t i = 0; i < from.features.size(); ++i) {
             // 16 bits each and as many of padding: vertices begin at multiples of 4 bytes.
             const std::vector<std::uint32_t> ids(vertices, from.features[i]);
-            const int view = add_view(ids.data(), ids.size() * sizeof(ids[0]),
+            const std::string_view bytes = bytes_of(ids.data(), ids.size());
+            const int view = add_view(bytes_.append_own(std::string(bytes)), bytes.size(),
                                       TINYGLTF_TARGET_ARRAY_BUFFER, sizeof(ids[0]));
             to.attributes[feature_attribute(i)] = add_features(view, vertices);
         }
-        const int view = add_view(from.indices.data(), from.indices.size() * sizeof(std::uint32_t),
+        const std::span<const std::uint32_t> indices = from.plain_indices();
+        const int view = add_view(bytes_of(indices.data(), indices.size()),
                                   TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-        to.indices = add_indices(view, from.indices.size());
+        to.indices = add_indices(view, indices.size());
     }
 
     void fill_draco(const DracoBytes& from, tinygltf::Primitive& to) {
         // No target: the bytes are neither vertices nor indices until a client has decoded them.
-        const int view = add_view(from.bytes.data(), from.bytes.size(), 0);
+        const int view = add_view(from.bytes, 0);
         Value::Object attributes;
         attributes["POSITION"] = Value(from.position_id);
         to.attributes["POSITION"] = add_vectors(-1, from.points);

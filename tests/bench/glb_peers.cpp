@@ -67,7 +67,7 @@ ReadyBuffers::ReadyBuffers(const core::MeshData& mesh) {
     const auto made = api::best_positions(mesh, 1.0, *coarsest, api::kDracoSteps);
     exponent = made.grid.exponent;
     const auto steps = static_cast<float>(made.grid.step());
-    const auto all_normals = api::smooth_normals(mesh);
+    const auto all_normals = api::smooth_normals(mesh, options.up);
     const auto piece = api::PieceCutter(mesh.vertices.size())
                            .cut<3>(std::span(mesh.triangles), api::all_of(mesh.triangles.size()));
     triangles = piece.corners;
@@ -78,7 +78,7 @@ ReadyBuffers::ReadyBuffers(const core::MeshData& mesh) {
         std::array<float, 3>& position = positions.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis)
             position[axis] = static_cast<float>(point[axis]) * steps;
-        normals.push_back(api::to_axes(all_normals[vertex], options.up));
+        normals.push_back(all_normals[vertex]);
     }
     low = box.low;
     for (std::size_t axis = 0; axis < 3; ++axis)
