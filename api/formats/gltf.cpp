@@ -130,74 +130,90 @@ std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const Gl
     return std::nullopt;
 }
 
-std::variant<std::vector<GlbNode>, EncodeError> compressed(const SceneInput& input,
-                                                           const Box<double>& bounds,
-                                                           GltfResult& result) {
-    const GltfOptions& options = input.options;
+/// Where the vertices are in the file: float32 from the origin, or on a grid.
+using Plainly = std::vector<std::array<float, 3>>;
+using Placed = std::variant<Plainly, GridPositions, EncodeError>;
+
+Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options, GltfResult& result) {
+    const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre);
     const std::optional<PositionGrid> coarsest = grid_for(bounds, options.tolerance);
     if (!coarsest)
         return EncodeError{EncodeFault::ToleranceTooFine,
                            "too fine for a mesh of this extent; ask for tolerance=" +
                                as_text(finest_tolerance(bounds)) + " or coarser"};
-    const auto [grid, points, check] =
-        best_positions(input.mesh, options.unit_to_metre, *coarsest,
+    GridPositions placed =
+        best_positions(mesh, options.unit_to_metre, *coarsest,
                        options.compression == Compression::Draco ? kDracoSteps : kMeshoptSteps);
-    result.origin = grid.origin;
-    result.step = grid.step();
-    result.axis_error = largest_error(input.mesh, options.unit_to_metre, grid, points);
-    result.flipped = check.flipped;
-    result.collapsed = check.collapsed;
-    return grid_nodes(input, grid, points);
+    result.origin = placed.grid.origin;
+    result.step = placed.grid.step();
+    result.axis_error = largest_error(mesh, options.unit_to_metre, placed.grid, placed.points);
+    result.flipped = placed.check.flipped;
+    result.collapsed = placed.check.collapsed;
+    return placed;
 }
 
-std::vector<GlbNode> plain(const SceneInput& input, const Box<double>& bounds, GltfResult& result) {
-    result.origin = whole_metre_middle(bounds);
-    const double unit = input.options.unit_to_metre;
-    std::vector<std::array<float, 3>> positions(input.mesh.vertices.size());
+Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options, GltfResult& result) {
+    const double unit = options.unit_to_metre;
+    const std::array<double, 3> origin = whole_metre_middle(bounds_in_metres(mesh, unit));
+    std::array<double, 3> largest{};
+    Plainly positions(mesh.vertices.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        const core::Point3& vertex = input.mesh.vertices[i];
+        const core::Point3& vertex = mesh.vertices[i];
         const std::array<double, 3> metres{vertex.x * unit, vertex.y * unit, vertex.z * unit};
-        std::array<float, 3>& position = positions[i];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            position[axis] = static_cast<float>(metres[axis] - result.origin[axis]);
-            const double error = result.origin[axis] + double{position[axis]} - metres[axis];
-            result.axis_error[axis] = std::max(result.axis_error[axis], std::fabs(error));
+            const auto rounded = static_cast<float>(metres[axis] - origin[axis]);
+            const double error = origin[axis] + double{rounded} - metres[axis];
+            largest[axis] = std::max(largest[axis], std::fabs(error));
+            positions[i][axis] = rounded;
         }
     }
     const auto plan = [&](std::uint32_t vertex) {
         return core::Point2{double{positions[vertex][0]}, double{positions[vertex][1]}};
     };
-    for (const auto& [a, b, c] : input.mesh.triangles) {
+    for (const auto& [a, b, c] : mesh.triangles) {
         const core::Orientation side = core::orientation(plan(a), plan(b), plan(c));
         if (side == core::Orientation::Clockwise) ++result.flipped;
         if (side == core::Orientation::Collinear) ++result.collapsed;
     }
+    result.origin = origin;
+    result.axis_error = largest;
+    return positions;
+}
+
+std::variant<std::vector<GlbNode>, EncodeError> nodes_of(const SceneInput& input,
+                                                         const Placed& placed,
+                                                         const core::Executor& executor,
+                                                         const GltfResult& result) {
+    if (const auto* error = std::get_if<EncodeError>(&placed)) return *error;
+    if (const auto* on_grid = std::get_if<GridPositions>(&placed))
+        return grid_nodes(input, on_grid->grid, on_grid->points, executor);
     std::vector<GlbNode> nodes;
-    nodes.push_back(plain_node(input, result.origin, positions));
+    nodes.push_back(plain_node(input, result.origin, std::get<Plainly>(placed)));
     return nodes;
 }
 
 std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const GltfOptions& options,
                                             const RegionPartition* regions,
+                                            const core::Executor& executor,
                                             GltfContainer container) {
     if (std::optional<EncodeError> fault = find_fault(mesh, options, regions))
         return *std::move(fault);
-    const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre);
+    GltfResult result;
+    Placed placed;
     std::vector<std::array<float, 3>> normals;
-    if (options.normals) normals = smooth_normals(mesh, options.up);
+    std::vector<core::Job> jobs;
+    if (options.normals) jobs.emplace_back([&] { normals = smooth_normals(mesh, options.up); });
+    jobs.emplace_back([&] {
+        placed = options.compression == Compression::None ? place_plainly(mesh, options, result)
+                                                          : place_on_grid(mesh, options, result);
+    });
+    executor(jobs);
     // Where no polygon has an inside there is nothing to tell apart.
     const bool has_regions = regions != nullptr && !regions->features.empty();
     std::vector<SceneGroup> groups;
     if (has_regions) groups = groups_of(*regions);
     const SceneInput input{mesh, options, normals, groups};
-
-    GltfResult result;
-    std::variant<std::vector<GlbNode>, EncodeError> nodes;
-    if (options.compression == Compression::None) {
-        nodes = plain(input, bounds, result);
-    } else {
-        nodes = compressed(input, bounds, result);
-    }
+    auto nodes = nodes_of(input, placed, executor, result);
     if (auto* error = std::get_if<EncodeError>(&nodes)) return std::move(*error);
     GlbScene scene;
     scene.generator = "Tinsmith";
@@ -216,14 +232,16 @@ std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const Gl
 
 std::variant<GltfResult, EncodeError> write_glb(const core::MeshData& mesh,
                                                 const GltfOptions& options,
-                                                const RegionPartition* regions) {
-    return write(mesh, options, regions, GltfContainer::Glb);
+                                                const RegionPartition* regions,
+                                                const core::Executor& executor) {
+    return write(mesh, options, regions, executor, GltfContainer::Glb);
 }
 
 std::variant<GltfResult, EncodeError> write_gltf(const core::MeshData& mesh,
                                                  const GltfOptions& options,
-                                                 const RegionPartition* regions) {
-    return write(mesh, options, regions, GltfContainer::Json);
+                                                 const RegionPartition* regions,
+                                                 const core::Executor& executor) {
+    return write(mesh, options, regions, executor, GltfContainer::Json);
 }
 
 }  // namespace tinsmith::api

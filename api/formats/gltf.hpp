@@ -8,6 +8,7 @@
 
 #include "api/formats/gltf_error.hpp"
 #include "api/formats/gltf_regions.hpp"
+#include "core/types/executor.hpp"
 #include "core/types/mesh_data.hpp"
 
 namespace tinsmith::api {
@@ -43,15 +44,15 @@ struct GltfResult {
 ///
 /// Draco and meshopt: positions lie on one grid of a power of two and decode to exactly that grid
 /// in float32. It is the coarsest that the tolerance allows, or a finer one that one primitive can
-/// still hold, where fewer triangles are flipped or collapsed there. Usually that is one primitive.
-/// A mesh wider than
-/// 2^23 steps (65 km at 5 mm) becomes several, cut along triangles, and border vertices decode to
-/// the same bits in both; triangles wider than half of that go into an uncompressed primitive on
-/// the same grid. All share one node, so that a GPU rounds them alike. A mesh wider than 2^25
-/// steps (262 km at 5 mm) no longer fits one node's float32: then each primitive has its own node
-/// with a whole-metre translation, translation + position still agree exactly in double across
-/// borders, but a GPU may show a hairline there. Meshopt has other widths, 2^24 and 2^25 steps, and
-/// no uncompressed triangles. Both permute vertices.
+/// still hold, where fewer triangles are flipped or collapsed there. Usually that is one primitive,
+/// or, beyond kMostInOnePiece triangles (524,288), several side by side with about as many
+/// triangles. A mesh wider than 2^23 steps (65 km at 5 mm) becomes several, cut along triangles,
+/// and border vertices decode to the same bits in both; triangles wider than half of that go into
+/// an uncompressed primitive on the same grid. All share one node, so that a GPU rounds them alike.
+/// A mesh wider than 2^25 steps (262 km at 5 mm) no longer fits one node's float32: then each
+/// primitive has its own node with a whole-metre translation, translation + position still agree
+/// exactly in double across borders, but a GPU may show a hairline there. Meshopt has other widths,
+/// 2^24 and 2^25 steps, and no uncompressed triangles. Both permute vertices.
 ///
 /// None: float32 positions in the mesh's vertex order, u32 indices in its triangle order, one
 /// primitive.
@@ -65,15 +66,18 @@ struct GltfResult {
 /// Constraint edges are never compressed and have the very positions of the mesh. What the result
 /// says is also in the scene's `extras`. The same mesh and options give the same bytes.
 /// Every vertex should be used by a triangle. Cost: Draco's, about 0.2 s for a million triangles,
-/// and a few passes over the mesh; starts no threads.
+/// and a few passes over the mesh. Normals are a job for the executor, positions another, and then
+/// each primitive; the bytes are the same however it does them.
 /// Requires of regions: a set for each triangle; at most kMostRegionFeatures.
-std::variant<GltfResult, EncodeError> write_glb(const core::MeshData& mesh,
-                                                const GltfOptions& options,
-                                                const RegionPartition* regions = nullptr);
+std::variant<GltfResult, EncodeError> write_glb(
+    const core::MeshData& mesh, const GltfOptions& options,
+    const RegionPartition* regions = nullptr,
+    const core::Executor& executor = core::one_after_another);
 
 /// The same scene as glTF's JSON, its buffer embedded as a data URI.
-std::variant<GltfResult, EncodeError> write_gltf(const core::MeshData& mesh,
-                                                 const GltfOptions& options,
-                                                 const RegionPartition* regions = nullptr);
+std::variant<GltfResult, EncodeError> write_gltf(
+    const core::MeshData& mesh, const GltfOptions& options,
+    const RegionPartition* regions = nullptr,
+    const core::Executor& executor = core::one_after_another);
 
 }  // namespace tinsmith::api

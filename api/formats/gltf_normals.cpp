@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "api/formats/gltf_scene.hpp"
@@ -10,16 +9,16 @@
 namespace tinsmith::api {
 namespace {
 
-/// x, y, z and nothing: two pairs, which a processor adds at a time.
-using Sum = std::array<double, 4>;
+struct Vector {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
 
-void add(Sum& to, const Sum& what) {
-    for (std::size_t i = 0; i < what.size(); ++i)
-        to[i] += what[i];
-}
+    Vector operator+(const Vector& v) const { return {x + v.x, y + v.y, z + v.z}; }
+};
 
-std::array<float, 3> unit_of(const Sum& sum) {
-    const auto& [x, y, z, nothing] = sum;
+std::array<float, 3> unit_of(const Vector& sum) {
+    const auto& [x, y, z] = sum;
     const double length = std::sqrt(x * x + y * y + z * z);
     // Triangles of a session are never flat in plan; only rounding to zero comes here.
     if (!(length > 0.0) || !std::isfinite(length)) return {0.0F, 0.0F, 1.0F};
@@ -34,7 +33,7 @@ std::array<float, 3> unit_of(const Sum& sum) {
 }  // namespace
 
 std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh, UpAxis up) {
-    std::vector<Sum> sums(mesh.vertices.size());
+    std::vector<Vector> sums(mesh.vertices.size());
     for (const auto& corners : mesh.triangles) {
         const core::Point3& a = mesh.vertices[corners[0]];
         const core::Point3& b = mesh.vertices[corners[1]];
@@ -42,9 +41,15 @@ std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh, UpA
         const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
         const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
         // The cross product's length is twice the area: the weight comes by itself.
-        const Sum normal{uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, 0.0};
-        for (const std::uint32_t vertex : corners)
-            add(sums[vertex], normal);
+        const Vector normal{uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+        // Corners are distinct: all three are read before one is written, so that none waits.
+        Vector& at_a = sums[corners[0]];
+        Vector& at_b = sums[corners[1]];
+        Vector& at_c = sums[corners[2]];
+        const Vector new_a = at_a + normal, new_b = at_b + normal, new_c = at_c + normal;
+        at_a = new_a;
+        at_b = new_b;
+        at_c = new_c;
     }
     std::vector<std::array<float, 3>> normals(sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i)

@@ -2,12 +2,15 @@
 #include "api/formats/gltf_scene.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "api/formats/gltf_pieces.hpp"
+#include "api/formats/gltf_plan.hpp"
 
 namespace tinsmith::api {
 namespace {
@@ -53,72 +56,71 @@ GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
     return primitive;
 }
 
-/// Makes the primitives and nodes of one mesh on its grid.
-class GridSceneBuilder {
+/// Piece cutters, one for each thread that needs one at a time: each knows all vertices.
+class Cutters {
   public:
-    GridSceneBuilder(const SceneInput& input, const PositionGrid& grid,
-                     std::span<const GridPoint> points)
-        : input_(input), grid_(grid), points_(points), cutter_(points.size()) {
-        Box<std::int32_t> box;
-        for (const GridPoint& point : points)
-            box.add(point);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            fits_tile_ = fits_tile_ && box.high[axis] - box.low[axis] <= kDracoSteps;
-            one_node_ = one_node_ && box.low[axis] >= -kFloatSteps && box.high[axis] <= kFloatSteps;
-        }
-    }
+    explicit Cutters(std::size_t vertices) : vertices_(vertices) {}
 
-    std::variant<std::vector<GlbNode>, EncodeError> build() {
-        if (input_.groups.empty()) {
-            add_group({all_of(input_.mesh.triangles.size()), {}, {}});
-        } else {
-            for (const SceneGroup& group : input_.groups)
-                add_group(group);
-        }
-        group_ = nullptr;
-        if (input_.options.constraints)
-            add_spread<2>(input_.mesh.constraints, all_of(input_.mesh.constraints.size()));
-        if (error_) return *std::move(error_);
-        return std::move(nodes_);
+    template <std::size_t N>
+    Piece<N> cut(std::span<const Corners<N>> all, std::span<const std::uint32_t> chosen) {
+        std::unique_ptr<PieceCutter> cutter = take();
+        Piece<N> piece = cutter->cut<N>(all, chosen);
+        const std::lock_guard lock(mutex_);
+        free_.push_back(std::move(cutter));
+        return piece;
     }
 
   private:
-    void add_group(const SceneGroup& group) {
-        group_ = &group;
-        const std::span<const Corners<3>> all = input_.mesh.triangles;
-        if (input_.options.compression == Compression::Meshopt)
-            return add_spread<3>(all, group.triangles);
-        if (fits_tile_ && one_node_) return add_tile(group.triangles);
-        Tiling tiling = split_into_tiles(boxes_of<3>(all, group.triangles), kDracoSteps);
-        for (Items* items : pointers_to(tiling)) {
-            for (std::uint32_t& item : *items)
-                item = group.triangles[item];
+    std::unique_ptr<PieceCutter> take() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!free_.empty()) {
+                std::unique_ptr<PieceCutter> cutter = std::move(free_.back());
+                free_.pop_back();
+                return cutter;
+            }
         }
-        for (const Items& tile : tiling.tiles)
-            add_tile(tile);
-        add_spread<3>(all, std::move(tiling.too_large));
+        return std::make_unique<PieceCutter>(vertices_);
     }
 
-    static std::vector<Items*> pointers_to(Tiling& tiling) {
-        std::vector<Items*> all{&tiling.too_large};
-        for (Items& tile : tiling.tiles)
-            all.push_back(&tile);
-        return all;
-    }
+    std::size_t vertices_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<PieceCutter>> free_;
+};
 
-    template <std::size_t N>
-    std::vector<Box<std::int32_t>> boxes_of(std::span<const Corners<N>> all,
-                                            std::span<const std::uint32_t> items) const {
-        std::vector<Box<std::int32_t>> boxes(items.size());
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            for (const std::uint32_t vertex : all[items[i]])
-                boxes[i].add(points_[vertex]);
+/// Makes the primitives of one mesh on its grid, each by itself.
+class PrimitiveMaker {
+  public:
+    PrimitiveMaker(const SceneInput& input, const PositionGrid& grid,
+                   std::span<const GridPoint> points, bool one_node)
+        : input_(input),
+          grid_(grid),
+          points_(points),
+          one_node_(one_node),
+          cutters_(points.size()) {}
+
+    struct Made {
+        GridPoint shift{};  ///< where its node stands, in steps
+        GlbPrimitive primitive;
+        std::optional<EncodeError> error;
+    };
+
+    Made make(const PlannedPiece& planned) {
+        switch (planned.as) {
+            case PlannedPiece::As::Lines:
+                return plain<2>(planned, input_.mesh.constraints);
+            case PlannedPiece::As::PlainTriangles:
+                return plain<3>(planned, input_.mesh.triangles);
+            case PlannedPiece::As::Draco:
+            case PlannedPiece::As::Meshopt:
+                break;
         }
-        return boxes;
+        return compressed(planned);
     }
 
-    /// Where a piece's node stands, in steps: the session's origin while float32 reaches the whole
-    /// mesh from there, else whole metres near the middle of the piece.
+  private:
+    /// The session's origin while float32 reaches the whole mesh from there, else whole metres near
+    /// the middle of the piece.
     GridPoint shift_for(std::span<const std::uint32_t> vertices) const {
         if (one_node_) return {};
         Box<std::int32_t> box;
@@ -133,128 +135,104 @@ class GridSceneBuilder {
         return shift;
     }
 
-    std::vector<GlbPrimitive>& node_at(const GridPoint& shift) {
-        if (nodes_.empty() || !one_node_) {
-            std::array<double, 3> translation = grid_.origin;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                translation[axis] += grid_.step() * shift[axis];
-            const std::string name =
-                one_node_ ? "terrain" : "terrain " + std::to_string(nodes_.size());
-            nodes_.push_back({name, to_axes(translation, input_.options.up), {}});
-        }
-        return nodes_.back().primitives;
-    }
-
     GridPoint local(std::uint32_t vertex, const GridPoint& shift) const {
         const GridPoint& point = points_[vertex];
         return {point[0] - shift[0], point[1] - shift[1], point[2] - shift[2]};
     }
 
-    /// A piece as it lies on the grid, in the file's axes.
-    struct OnGrid {
-        std::vector<GridPoint> positions;
-        std::vector<std::array<float, 3>> normals;
+    Made compressed(const PlannedPiece& planned) {
+        const Piece<3> piece = cutters_.cut<3>(input_.mesh.triangles, planned.items);
+        Made made{shift_for(piece.vertices), {}, {}};
+        std::vector<GridPoint> positions(piece.vertices.size());
+        std::vector<std::array<float, 3>> normals(input_.normals.empty() ? 0 : positions.size());
         Box<std::int32_t> box;
-    };
-
-    OnGrid on_grid(const Piece<3>& piece, const GridPoint& shift) const {
-        const UpAxis up = input_.options.up;
-        OnGrid made;
-        made.positions.reserve(piece.vertices.size());
-        if (!input_.normals.empty()) made.normals.reserve(piece.vertices.size());
-        for (const std::uint32_t vertex : piece.vertices) {
-            made.positions.push_back(to_axes(local(vertex, shift), up));
-            made.box.add(made.positions.back());
-            if (!input_.normals.empty()) made.normals.push_back(input_.normals[vertex]);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            positions[i] = to_axes(local(piece.vertices[i], made.shift), input_.options.up);
+            box.add(positions[i]);
+        }
+        for (std::size_t i = 0; i < normals.size(); ++i)
+            normals[i] = input_.normals[piece.vertices[i]];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            made.primitive.low[axis] = grid_.step() * box.low[axis];
+            made.primitive.high[axis] = grid_.step() * box.high[axis];
+        }
+        std::span<const std::uint16_t> features;
+        if (planned.group != nullptr) {
+            made.primitive.features = planned.group->features;
+            made.primitive.polygons = planned.group->polygons;
+            features = planned.group->features;
+        }
+        if (planned.as == PlannedPiece::As::Meshopt) {
+            made.primitive.meshopt =
+                encode_meshopt({positions, normals, piece.corners, grid_.exponent, features});
+            return made;
+        }
+        auto encoded = encode_draco({positions, normals, piece.corners, grid_.exponent, features});
+        if (auto* error = std::get_if<EncodeError>(&encoded)) {
+            made.error = std::move(*error);
+        } else {
+            made.primitive.draco = std::get<DracoBytes>(std::move(encoded));
         }
         return made;
     }
 
-    void add_compressed(const GridPoint& shift, const OnGrid& piece, GlbPrimitive primitive) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            primitive.low[axis] = grid_.step() * piece.box.low[axis];
-            primitive.high[axis] = grid_.step() * piece.box.high[axis];
-        }
-        primitive.features = group_->features;
-        primitive.polygons = group_->polygons;
-        node_at(shift).push_back(std::move(primitive));
-    }
-
-    void add_tile(std::span<const std::uint32_t> triangles) {
-        const Piece<3> piece = cutter_.cut<3>(input_.mesh.triangles, triangles);
-        const GridPoint shift = shift_for(piece.vertices);
-        const OnGrid made = on_grid(piece, shift);
-        auto encoded = encode_draco(
-            {made.positions, made.normals, piece.corners, grid_.exponent, group_->features});
-        if (const auto* error = std::get_if<EncodeError>(&encoded)) {
-            error_ = *error;
-            return;
-        }
-        GlbPrimitive primitive;
-        primitive.draco = std::get<DracoBytes>(std::move(encoded));
-        add_compressed(shift, made, std::move(primitive));
-    }
-
-    /// Triangles or edges without Draco, on the same grid. More nodes have a tiling of their own:
-    /// float32 reaches kFloatSteps to both sides of a node that is half a metre off the middle.
     template <std::size_t N>
-    void add_spread(std::span<const Corners<N>> all, Items items) {
-        if (items.empty()) return;
-        if (one_node_) return add_spread_piece<N>(all, items);
-        Tiling tiling =
-            split_into_tiles(boxes_of<N>(all, items), 2 * (kFloatSteps - grid_.period()));
-        if (!tiling.too_large.empty()) {
-            error_ = EncodeError{EncodeFault::ToleranceTooFine,
-                                 "an edge is too long for float32 at this tolerance; ask for a "
-                                 "coarser tolerance"};
-            return;
-        }
-        for (Items& tile : tiling.tiles) {
-            for (std::uint32_t& item : tile)
-                item = items[item];
-            add_spread_piece<N>(all, tile);
-        }
-    }
-
-    template <std::size_t N>
-    void add_spread_piece(std::span<const Corners<N>> all, std::span<const std::uint32_t> items) {
-        const Piece<N> piece = cutter_.cut<N>(all, items);
+    Made plain(const PlannedPiece& planned, std::span<const Corners<N>> all) {
+        const Piece<N> piece = cutters_.cut<N>(all, planned.items);
         const GridPoint shift = shift_for(piece.vertices);
-        if constexpr (N == 3) {
-            if (input_.options.compression == Compression::Meshopt) {
-                const OnGrid made = on_grid(piece, shift);
-                GlbPrimitive primitive;
-                primitive.meshopt = encode_meshopt({made.positions, made.normals, piece.corners,
-                                                    grid_.exponent, group_->features});
-                return add_compressed(shift, made, std::move(primitive));
-            }
-        }
-        const float step = static_cast<float>(grid_.step());
-        node_at(shift).push_back(plain_primitive(input_, group_, piece, [&](std::uint32_t vertex) {
-            const GridPoint n = local(vertex, shift);
-            return std::array<float, 3>{static_cast<float>(n[0]) * step,
-                                        static_cast<float>(n[1]) * step,
-                                        static_cast<float>(n[2]) * step};
-        }));
+        const auto step = static_cast<float>(grid_.step());
+        return {shift,
+                plain_primitive(input_, planned.group, piece,
+                                [&](std::uint32_t vertex) {
+                                    const GridPoint n = local(vertex, shift);
+                                    return std::array<float, 3>{static_cast<float>(n[0]) * step,
+                                                                static_cast<float>(n[1]) * step,
+                                                                static_cast<float>(n[2]) * step};
+                                }),
+                {}};
     }
 
     const SceneInput& input_;
     const PositionGrid& grid_;
     std::span<const GridPoint> points_;
-    PieceCutter cutter_;
-    bool fits_tile_ = true;
-    bool one_node_ = true;
-    const SceneGroup* group_ = nullptr;  ///< that triangles are being added of
-    std::vector<GlbNode> nodes_;
-    std::optional<EncodeError> error_;
+    bool one_node_;
+    Cutters cutters_;
 };
+
+std::array<double, 3> translation_of(const PositionGrid& grid, const GridPoint& shift, UpAxis up) {
+    std::array<double, 3> translation = grid.origin;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        translation[axis] += grid.step() * shift[axis];
+    return to_axes(translation, up);
+}
 
 }  // namespace
 
 std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& input,
                                                            const PositionGrid& grid,
-                                                           std::span<const GridPoint> points) {
-    return GridSceneBuilder(input, grid, points).build();
+                                                           std::span<const GridPoint> points,
+                                                           const core::Executor& executor) {
+    auto planned = plan_scene(input, grid, points);
+    if (auto* error = std::get_if<EncodeError>(&planned)) return std::move(*error);
+    const auto& plan = std::get<ScenePlan>(planned);
+    PrimitiveMaker maker(input, grid, points, plan.one_node);
+    std::vector<PrimitiveMaker::Made> made(plan.pieces.size());
+    std::vector<core::Job> jobs;
+    for (std::size_t i = 0; i < made.size(); ++i)
+        jobs.emplace_back([&, i] { made[i] = maker.make(plan.pieces[i]); });
+    executor(jobs);
+
+    std::vector<GlbNode> nodes;
+    for (PrimitiveMaker::Made& piece : made) {
+        if (piece.error) return *std::move(piece.error);
+        if (nodes.empty() || !plan.one_node) {
+            const std::string name =
+                plan.one_node ? "terrain" : "terrain " + std::to_string(nodes.size());
+            nodes.push_back({name, translation_of(grid, piece.shift, input.options.up), {}});
+        }
+        nodes.back().primitives.push_back(std::move(piece.primitive));
+    }
+    return nodes;
 }
 
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,

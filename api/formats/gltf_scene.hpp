@@ -11,6 +11,7 @@
 #include "api/formats/gltf.hpp"
 #include "api/formats/gltf_writer.hpp"
 #include "api/formats/quantization.hpp"
+#include "core/types/executor.hpp"
 #include "core/types/mesh_data.hpp"
 
 namespace tinsmith::api {
@@ -24,7 +25,8 @@ std::array<T, 3> to_axes(const std::array<T, 3>& v, UpAxis up) {
 }
 
 /// A direction for each vertex, in the file's axes, of length 1: the sum of its triangles' normals,
-/// each weighted by its area. (0, 0, 1) where that is zero. Cost: one pass.
+/// each weighted by its area. (0, 0, 1) where that is zero. Requires: a triangle's
+/// corners are distinct. Cost: one pass.
 std::vector<std::array<float, 3>> smooth_normals(const core::MeshData& mesh, UpAxis up);
 
 /// Triangles that lie in the same polygons.
@@ -46,11 +48,13 @@ struct SceneInput {
     std::span<const SceneGroup> groups;
 };
 
-/// Primitives on the grid, with Draco or meshopt: one for each group if it fits, else tiles, and
-/// constraint lines; see write_glb. Requires: a valid mesh, `points` as from quantize.
+/// Primitives on the grid, with Draco or meshopt, as `plan_scene` has it; see write_glb. Each is a
+/// job for the executor, and none of them waits for another. Requires: a valid mesh, `points` as
+/// from quantize.
 std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& input,
                                                            const PositionGrid& grid,
-                                                           std::span<const GridPoint> points);
+                                                           std::span<const GridPoint> points,
+                                                           const core::Executor& executor);
 
 /// One node with the mesh in its own order, or group by group, `positions` in session axes from
 /// `origin`, and constraint lines.

@@ -11,6 +11,7 @@ namespace tinsmith::api {
 namespace {
 
 constexpr int kNormalExponent = -12;
+constexpr float kNormalSteps = 4096.0F;  // 2^-kNormalExponent, so that products are exact
 
 /// The extension has the first version of each codec; newer libraries write others unless told.
 void choose_codecs() {
@@ -69,7 +70,7 @@ MeshoptView encode_normals(const MeshoptPiece& piece, std::span<const std::uint3
     std::vector<std::array<std::uint32_t, 3>> elements(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float scaled = std::ldexp(piece.normals[order[i]][axis], -kNormalExponent);
+            const float scaled = piece.normals[order[i]][axis] * kNormalSteps;
             elements[i][axis] =
                 exponential(static_cast<std::int32_t>(std::lrint(scaled)), kNormalExponent);
         }

@@ -7,6 +7,7 @@
 #include "api/crs.hpp"
 #include "api/formats/gltf.hpp"
 #include "api/responses.hpp"
+#include "api/side_by_side.hpp"
 #include "api/terrain_options.hpp"
 #include "server/commands/commands.hpp"
 #include "server/commands/complaints.hpp"
@@ -116,8 +117,8 @@ int write_results(const IntegrateConfig& config, const Session& session,
         return kExitRefused;
     }
     const auto& source = std::get<MeshSource>(found);
-    const auto written =
-        api::write_glb(source.mesh, options.gltf, source.regions ? &*source.regions : nullptr);
+    const auto written = api::write_glb(
+        source.mesh, options.gltf, source.regions ? &*source.regions : nullptr, api::side_by_side);
     bar.clear();
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
         complain(config.output + ": " + error->detail);

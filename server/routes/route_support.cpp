@@ -11,6 +11,7 @@
 #include "api/crs.hpp"
 #include "api/media_type.hpp"
 #include "api/problem.hpp"
+#include "api/side_by_side.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"
 
@@ -129,8 +130,8 @@ Response gltf_response(Metrics& metrics, const Request& request, const core::Mes
                        const api::GltfOptions& options, const GltfAnswer& as) {
     const EncodeMeter meter(metrics, as.type == kGlb ? EncodeFormat::Glb : EncodeFormat::Gltf,
                             options.compression);
-    auto written = as.type == kGlb ? api::write_glb(mesh, options, as.regions)
-                                   : api::write_gltf(mesh, options, as.regions);
+    auto written = as.type == kGlb ? api::write_glb(mesh, options, as.regions, api::side_by_side)
+                                   : api::write_gltf(mesh, options, as.regions, api::side_by_side);
     if (const auto* error = std::get_if<api::EncodeError>(&written)) {
         return refuse(request, problem_of(error->fault), error->detail + as.note);
     }
