@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// A grid of elevations from its GeoTIFF to a mesh that can be edited, against what no program can
+// leave out: reading the file, and writing as many bytes as the finished mesh has into memory that
+// was not used before. README.md in this folder says what came out. One thread, wall time: half of
+// it is the system's handing out of pages.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <cpl_conv.h>
+#include <gdal.h>
+
+#include "api/formats/geotiff.hpp"
+#include "core/mesh/build.hpp"
+#include "core/mesh/large_blocks.hpp"
+#include "tests/bench/timing.hpp"
+#include "tests/bench/turns.hpp"
+
+namespace tinsmith::bench {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: dem_bench TRIANGLES [RUNS]\n"
+    "  writes dem_bench.tif, the bundled terrain with about so many triangles, where it is called\n"
+    "  10000000  needs 3 GB; 20000 is a smoke test, which fails where triangles are missing\n";
+
+struct Close {
+    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<void, Close>;
+
+/// The bundled terrain, bilinear between its posts, with so many columns and rows.
+void write_dem(const std::string& path, int columns, int rows) {
+    const Dataset from(GDALOpen(TINSMITH_SOURCE_DIR "/tests/data/jacksboro.tif", GA_ReadOnly));
+    if (!from) throw std::runtime_error("tests/data/jacksboro.tif cannot be read");
+    GDALRasterBandH band = GDALGetRasterBand(from.get(), 1);
+    const int width = GDALGetRasterXSize(from.get()), height = GDALGetRasterYSize(from.get());
+    std::vector<float> posts(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    GDALRasterIOExtraArg bilinear;
+    INIT_RASTERIO_EXTRA_ARG(bilinear);
+    bilinear.eResampleAlg = GRIORA_Bilinear;
+    const CPLErr read = GDALRasterIOEx(band, GF_Read, 0, 0, width, height, posts.data(), columns,
+                                       rows, GDT_Float32, 0, 0, &bilinear);
+    const Dataset to(GDALCreate(GDALGetDriverByName("GTiff"), path.c_str(), columns, rows, 1,
+                                GDT_Float32, nullptr));
+    if (read != CE_None || !to) throw std::runtime_error(path + " cannot be written");
+    double place[6];
+    GDALGetGeoTransform(from.get(), place);
+    place[1] *= static_cast<double>(width) / columns;
+    place[5] *= static_cast<double>(height) / rows;
+    GDALSetGeoTransform(to.get(), place);
+    GDALSetSpatialRef(to.get(), GDALGetSpatialRef(from.get()));
+    if (GDALRasterIO(GDALGetRasterBand(to.get(), 1), GF_Write, 0, 0, columns, rows, posts.data(),
+                     columns, rows, GDT_Float32, 0, 0) != CE_None)
+        throw std::runtime_error(path + " cannot be written");
+}
+
+std::string bytes_of_file(const std::string& path) {
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    std::string bytes(static_cast<std::size_t>(in.tellg()), '\0');
+    in.seekg(0);
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        throw std::runtime_error(path + " cannot be read");
+    return bytes;
+}
+
+core::Tin ready_to_edit(const std::string& path) {
+    api::ReadLimits limits;
+    limits.max_vertices = limits.max_triangles = 50'000'000;
+    auto terrain = api::read_geotiff(bytes_of_file(path), limits, {});
+    if (!terrain) throw std::runtime_error(terrain.faults().front().detail);
+    auto tin = core::build_tin(terrain->mesh);
+    if (!tin) throw std::runtime_error(tin.errors().front().detail);
+    return std::move(*tin);
+}
+
+/// The bytes of the file, and so many written.
+void read_and_write(const std::string& path, std::size_t bytes) {
+    const std::string file = bytes_of_file(path);
+    void* const block = core::allocate_large_block(bytes);
+    std::memset(block, file.empty() ? 1 : file.back(), bytes);
+    core::free_large_block(block, bytes);
+}
+
+int run(std::size_t triangles, int runs) {
+    GDALAllRegister();
+    const std::string path = "dem_bench.tif";
+    const auto rows = static_cast<int>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
+    write_dem(path, rows, rows);
+    const core::Tin tin = ready_to_edit(path);
+    std::printf(
+        "%zu triangles, %.1f bytes each\n", tin.triangle_count(),
+        static_cast<double>(tin.memory_bytes()) / static_cast<double>(tin.triangle_count()));
+    const auto cells = static_cast<std::size_t>(rows - 1);
+    if (tin.triangle_count() != 2 * cells * cells) return EXIT_FAILURE;
+    const std::size_t bytes = tin.memory_bytes();
+    const auto timed = [](auto call) -> Side {
+        return [call] {
+            const double start = wall_ms();
+            call();
+            return wall_ms() - start;
+        };
+    };
+    const Turns turns = take_turns(
+        {timed([&] { ready_to_edit(path); }), timed([&] { read_and_write(path, bytes); })}, runs);
+    std::printf("| Tinsmith ms | read and write ms | ratio |\n|--:|--:|--:|\n| %s | %s | %s |\n",
+                milliseconds(turns[0]).c_str(), milliseconds(turns[1]).c_str(),
+                ratio(turns[0], turns[1]).c_str());
+    return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace tinsmith::bench
+
+int main(int count, char** arguments) {
+    const long triangles = count > 1 ? std::atol(arguments[1]) : 0;
+    if (triangles < 2) {
+        std::fputs(tinsmith::bench::kUsage, stderr);
+        return 2;
+    }
+    try {
+        return tinsmith::bench::run(static_cast<std::size_t>(triangles),
+                                    std::max(count > 2 ? std::atoi(arguments[2]) : 5, 1));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "dem_bench: %s\n", error.what());
+        return EXIT_FAILURE;
+    }
+}
