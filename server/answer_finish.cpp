@@ -75,7 +75,7 @@ void add_vary(Response& response, std::string_view name) {
 void finish_answer(const Policy& policy, const Request& request, Response& response) {
     if (wants_gzip(request, response)) encode_as_gzip(request, response);
     const bool may_be_coded =
-        is_compressible(response) || (is_read(request) && response.body.empty());
+        is_compressible(response) || (is_read(request) && response.sent().empty());
     if (may_be_coded) add_vary(response, "Accept-Encoding");
     if (request.trace) response.with("traceparent", request.trace->text());
     allow_origin(policy, request, response);

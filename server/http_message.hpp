@@ -59,6 +59,11 @@ struct Response {
     /// The pattern of the path that answered; null: none did. It lives as long as the router.
     const RouteMeter* route = nullptr;
     std::string_view problem = {};  ///< the stable word of a refusal, for the log; else empty
+    /// Instead of `body`, where others have it too: a mesh of megabytes is not copied to be sent.
+    std::shared_ptr<const std::string> shared_body{};
+
+    /// The body, whoever has it.
+    const std::string& sent() const { return shared_body ? *shared_body : body; }
 
     Response& with(std::string name, std::string value) {
         headers.emplace_back(std::move(name), std::move(value));

@@ -114,7 +114,7 @@ void log_request(const Request& request, const Response& response, double millis
 }
 
 std::size_t bytes_sent(const Request& request, const Response& response) {
-    return request.method == "HEAD" ? 0 : response.body.size();
+    return request.method == "HEAD" ? 0 : response.sent().size();
 }
 
 }  // namespace tinsmith::server

@@ -58,8 +58,9 @@ class Connection {
     /// At least one byte, of `unread` or of the socket, waiting for it; 0: the end; -1: nothing
     /// came, or the connection is broken.
     long read(char* to, std::size_t most, std::chrono::milliseconds longest);
-    /// At least one byte; -1: none was taken for so long, or the connection is broken.
-    long write(const char* bytes, std::size_t count, std::chrono::milliseconds longest);
+    /// At least one byte of the two texts, as if they were one; -1: none was taken for so long, or
+    /// the connection is broken. Requires: one of them is not empty.
+    long write(std::string_view first, std::string_view second, std::chrono::milliseconds longest);
 
     /// Tells the client that no more comes, and reads on.
     void end_sending() const;

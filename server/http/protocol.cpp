@@ -66,7 +66,7 @@ httplib::Request& mutable_request(const httplib::Request& raw) {
     return const_cast<httplib::Request&>(raw);
 }
 
-/// A connection as the library sees it.
+/// A connection as the library sees it: it reads heads and bodies and writes heads.
 class ConnectionStream final : public httplib::Stream {
   public:
     /// `longest`: for one read or write. What it writes has to be taken at that pace.
@@ -77,14 +77,32 @@ class ConnectionStream final : public httplib::Stream {
     bool is_writable() const override { return true; }
 
     ssize_t read(char* to, std::size_t size) override {
+        // The client may wait for "100 Continue" before it sends more.
+        if (!head_.empty() && !flush()) return -1;
         return connection_.read(to, size, longest_);
     }
 
     ssize_t write(const char* bytes, std::size_t size) override {
-        if (!started_) started_ = Clock::now();
-        const ssize_t sent = connection_.write(bytes, size, longest_);
-        if (sent > 0) sent_ += static_cast<std::size_t>(sent);
-        return pace_.is_too_slow(*started_, sent_) ? -1 : sent;
+        head_.append(bytes, size);
+        return static_cast<ssize_t>(size);
+    }
+
+    /// Sends what the library has written, and a body after it. False: it was not taken.
+    bool flush(std::string_view body = {}) {
+        std::string_view head = head_;
+        const auto start = Clock::now();
+        for (std::size_t sent = 0; !head.empty() || !body.empty();) {
+            const long part = connection_.write(head, body, longest_);
+            if (part <= 0) return false;
+            const auto count = static_cast<std::size_t>(part);
+            const std::size_t of_head = std::min(count, head.size());
+            head.remove_prefix(of_head);
+            body.remove_prefix(count - of_head);
+            sent += count;
+            if (pace_.is_too_slow(start, sent) && !(head.empty() && body.empty())) return false;
+        }
+        head_.clear();
+        return true;
     }
 
     void get_remote_ip_and_port(std::string& address, int& port) const override {
@@ -106,8 +124,7 @@ class ConnectionStream final : public httplib::Stream {
     Connection& connection_;
     const std::chrono::seconds longest_;
     const Pace pace_;
-    std::optional<Clock::time_point> started_;  ///< writing
-    std::size_t sent_ = 0;
+    std::string head_;  ///< written and not sent: it goes out with the body, in one system call
 };
 
 /// The library's server without its sockets and threads.
@@ -138,8 +155,10 @@ class Library : public httplib::Server {
 
 /// One request on its way through the library, which calls back on the same thread.
 struct Exchange {
-    Request head;        ///< of a request whose body is being read
-    bool close = false;  ///< the answer is the last of its connection
+    Request head;              ///< of a request whose body is being read
+    Response answer;           ///< as the library was told it, but for its body
+    bool is_for_head = false;  ///< it goes without its body
+    bool close = false;        ///< it is the last of its connection
 };
 
 thread_local Exchange* current_exchange = nullptr;
@@ -157,9 +176,9 @@ void write_response(const httplib::Request& raw, httplib::Response& out, Respons
     for (auto& [name, value] : response.headers)
         out.set_header(name, value);
     if (response.close) exchange_here().close = true;
-    if (response.body.empty()) return;
-    out.set_header("Content-Type", response.content_type);
-    out.body = std::move(response.body);
+    exchange_here().is_for_head = raw.method == "HEAD";
+    if (!response.sent().empty()) out.set_header("Content-Type", response.content_type);
+    exchange_here().answer = std::move(response);
 }
 
 }  // namespace
@@ -185,6 +204,8 @@ class Protocol::Impl {
         }
         current_exchange = nullptr;
         if (!fine) return After::Drop;
+        const std::string_view body = exchange.answer.sent();
+        if (!stream.flush(exchange.is_for_head ? std::string_view() : body)) return After::Drop;
         return closed || exchange.close || draining_ ? After::Part : After::Keep;
     }
 
@@ -199,12 +220,7 @@ class Protocol::Impl {
         const std::string text =
             write_last_answer(response, api::problem_title(problem.type), request.method != "HEAD");
         ConnectionStream stream(connection, options_.wait, pace_);
-        for (std::string_view rest = text; !rest.empty();) {
-            const ssize_t sent = stream.write(rest.data(), rest.size());
-            if (sent <= 0) return After::Drop;
-            rest.remove_prefix(static_cast<std::size_t>(sent));
-        }
-        return After::Part;
+        return stream.flush(text) ? After::Part : After::Drop;
     }
 
     void drain() { draining_ = true; }
@@ -239,8 +255,7 @@ class Protocol::Impl {
         });
         library_.set_post_routing_handler([this](const httplib::Request&, httplib::Response& out) {
             tell_of_connection(out);
-            const bool is_silent = out.status == kNotModified;
-            if (out.body.empty() && is_silent) out.headers.erase("Content-Length");
+            tell_of_body(out);
         });
     }
 
@@ -253,6 +268,14 @@ class Protocol::Impl {
         } else {
             out.set_header("Keep-Alive", "timeout=" + std::to_string(options_.keep_alive.count()));
         }
+    }
+
+    /// The library hears of no body: it would copy it, compress it and cut ranges out of it.
+    static void tell_of_body(httplib::Response& out) {
+        const std::string& body = exchange_here().answer.sent();
+        out.headers.erase("Content-Length");
+        if (out.status != kNotModified)
+            out.set_header("Content-Length", std::to_string(body.size()));
     }
 
     /// What is wrong with the head or with who sends it, as an answer; nothing: go on.

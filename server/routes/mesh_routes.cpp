@@ -87,9 +87,13 @@ MeshCache::Found coded_copy(const Request& request, const EncodedMesh& mesh) {
     return encode_as_gzip(request, copy->response) ? copy : nullptr;
 }
 
-Response tell(const Session& session, const EncodedMesh& mesh, const std::string& suffix) {
-    Response response = mesh.response;
-    return response.with("ETag", etag_of(session, mesh.version, suffix));
+Response tell(const Session& session, const MeshCache::Found& mesh, const std::string& suffix) {
+    Response response;
+    response.status = mesh->response.status;
+    response.content_type = mesh->response.content_type;
+    response.headers = mesh->response.headers;
+    response.shared_body = {mesh, &mesh->response.body};
+    return response.with("ETag", etag_of(session, mesh->version, suffix));
 }
 
 /// The version that the query names; nothing: the mesh as it is now.
@@ -175,9 +179,9 @@ Response send(Services& services, const Session& session, const Request& request
         const std::string coded = suffix + std::string(kGzipSuffix);
         const auto mesh = services.meshes.get({birth, found->version, coded},
                                               [&] { return coded_copy(request, *found); });
-        if (mesh) return tell(session, *mesh, coded);
+        if (mesh) return tell(session, mesh, coded);
     }
-    return tell(session, *found, suffix);
+    return tell(session, found, suffix);
 }
 
 Response write_as(Metrics& metrics, const Request& request, const SessionFacts& facts,

@@ -44,6 +44,7 @@ inline Response ask(const Router& router, const Services& services, const std::s
     auto refusal = admit ? admit(request) : std::nullopt;
     Response response = refusal ? *std::move(refusal) : router.handle(request);
     finish_answer(services.policy, request, response);
+    if (response.shared_body) response.body = *response.shared_body;
     EXPECT_EQ(Description::get().complaint(request, response), "")
         << method << " " << target << " is answered as /openapi.json does not say";
     return response;

@@ -191,7 +191,7 @@ TEST(Reception, PartsWithoutLosingTheAnswer) {
     Arrival arrival = reception.next();
     ASSERT_TRUE(arrival.connection);
     const std::string answer = "HTTP/1.1 400 Bad\r\nContent-Length: 2\r\n\r\nno";
-    ASSERT_EQ(arrival.connection->write(answer.data(), answer.size(), milliseconds(1000)),
+    ASSERT_EQ(arrival.connection->write(answer, {}, milliseconds(1000)),
               static_cast<long>(answer.size()));
     (*reception).part(std::move(arrival.connection));
     EXPECT_EQ(client.read().body, "no");

@@ -43,7 +43,8 @@ class HostileJson : public Handlers {
             const Response answer = ask(method, path, {{"content-type", "application/json"}}, body);
             EXPECT_EQ(answer.status, status) << answer.body;
             bool is_told = false;
-            for (const auto& fault : json::parse(answer.body)["errors"])
+            const json problem = json::parse(answer.body);
+            for (const auto& fault : problem["errors"])
                 is_told |= fault["code"] == code && fault.value("pointer", "") == pointer;
             EXPECT_TRUE(is_told) << code << " at " << pointer << ": " << answer.body;
         }
