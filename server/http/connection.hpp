@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace tinsmith::server {
 
@@ -18,10 +19,7 @@ struct ConnectionTotals {
 };
 
 /// A numeric address and a port; an empty address where the system does not tell.
-struct Endpoint {
-    std::string address;
-    int port = 0;
-};
+using Endpoint = std::pair<std::string, int>;
 
 /// A client's connection: its socket, and what has been read of it and not been used yet.
 ///

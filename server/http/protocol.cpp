@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <httplib.h>
@@ -36,10 +37,6 @@ constexpr int kNotModified = 304;
 
 bool is_library_header(const std::string& name) {
     return std::find(kLibraryHeaders.begin(), kLibraryHeaders.end(), name) != kLibraryHeaders.end();
-}
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 Head head_of(const httplib::Request& raw) {
@@ -106,21 +103,16 @@ class ConnectionStream final : public httplib::Stream {
     }
 
     void get_remote_ip_and_port(std::string& address, int& port) const override {
-        tell(connection_.remote(), address, port);
+        std::tie(address, port) = connection_.remote();
     }
     void get_local_ip_and_port(std::string& address, int& port) const override {
-        tell(connection_.local(), address, port);
+        std::tie(address, port) = connection_.local();
     }
 
     /// None: the library compares it with what select(2) can bear, which is never asked here.
     socket_t socket() const override { return INVALID_SOCKET; }
 
   private:
-    static void tell(Endpoint&& end, std::string& address, int& port) {
-        address = std::move(end.address);
-        port = end.port;
-    }
-
     Connection& connection_;
     const std::chrono::seconds longest_;
     const Pace pace_;
@@ -212,7 +204,7 @@ class Protocol::Impl {
     After refuse_bytes(Connection& connection, const api::Problem& problem) const {
         Request request = request_of_bytes(connection.unread());
         request.id = random_hex(8);
-        request.remote_address = connection.remote().address;
+        request.remote_address = connection.remote().first;
         Response response = refuse(request, problem);
         response.with("X-Request-Id", request.id);
         calls_.finish(request, response);
@@ -353,7 +345,7 @@ class Protocol::Impl {
     void finish(const httplib::Request& raw, httplib::Response& out, const Request& request,
                 Response&& response, Clock::time_point start) const {
         calls_.finish(request, response);
-        calls_.told(request, response, seconds_since(start));
+        calls_.told(request, response, std::chrono::duration<double>(Clock::now() - start).count());
         write_response(raw, out, std::move(response));
     }
 

@@ -85,8 +85,8 @@ TEST(Reception, HandsOverHeadsThatAreWhole) {
     EXPECT_EQ(arrival.connection->unread(), kGet + "more");
     EXPECT_EQ(arrival.connection->size_of_head(), kGet.size());
     EXPECT_EQ(arrival.connection->size_of_head(), kGet.size()) << "as often as it is asked";
-    EXPECT_EQ(arrival.connection->remote().address, "127.0.0.1");
-    EXPECT_EQ(arrival.connection->local().port, reception.port());
+    EXPECT_EQ(arrival.connection->remote().first, "127.0.0.1");
+    EXPECT_EQ(arrival.connection->local().second, reception.port());
 }
 
 TEST(Reception, KeepsConnectionsForTheirNextRequest) {
