@@ -40,16 +40,21 @@ bool Program::is_running() {
     return waitpid(pid_, nullptr, WNOHANG) == 0;
 }
 
-Connection::Connection(int port) {
+Connection::Connection(int port) : port_(port) {
+    open();
+}
+
+void Connection::open() {
+    if (socket_ >= 0) close(socket_);
     socket_ = socket(AF_INET, SOCK_STREAM, 0);
     const int on = 1;
     setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     sockaddr_in address{};
     address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_port = htons(static_cast<std::uint16_t>(port_));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-        throw std::runtime_error("nobody listens on port " + std::to_string(port));
+        throw std::runtime_error("nobody listens on port " + std::to_string(port_));
 }
 
 Connection::~Connection() {
@@ -93,6 +98,7 @@ const Answer& Connection::ask(std::string_view method, std::string_view path,
         if (got <= 0) throw std::runtime_error("the connection was closed");
         filled += static_cast<std::size_t>(got);
     }
+    if (names.find("\r\nconnection: close") != std::string::npos) open();
     return answer_;
 }
 

@@ -29,8 +29,9 @@ struct Answer {
     std::string body;
 };
 
-/// One connection to 127.0.0.1 that is kept, as a browser keeps it. Throws where the other side
-/// closes it or answers without a Content-Length.
+/// One connection to 127.0.0.1 that is kept, as a browser keeps it. Opened anew where the other
+/// side says that it closes it. Throws where that happens unsaid, or an answer comes without a
+/// Content-Length.
 class Connection {
   public:
     explicit Connection(int port);
@@ -44,6 +45,9 @@ class Connection {
                       std::string_view body = {});
 
   private:
+    void open();
+
+    int port_;
     int socket_ = -1;
     std::string request_;
     std::string head_;
