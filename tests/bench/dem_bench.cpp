@@ -4,23 +4,17 @@
 // was not used before. README.md in this folder says what came out. One thread, wall time: half of
 // it is the system's handing out of pages.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
-#include <memory>
 #include <stdexcept>
 #include <string>
-#include <vector>
-
-#include <cpl_conv.h>
-#include <gdal.h>
 
 #include "api/formats/geotiff.hpp"
 #include "core/mesh/build.hpp"
 #include "core/mesh/large_blocks.hpp"
+#include "tests/bench/dem.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/bench/turns.hpp"
 
@@ -31,37 +25,6 @@ constexpr const char* kUsage =
     "usage: dem_bench TRIANGLES [RUNS]\n"
     "  writes dem_bench.tif, the bundled terrain with about so many triangles, where it is called\n"
     "  10000000  needs 3 GB; 20000 is a smoke test, which fails where triangles are missing\n";
-
-struct Close {
-    void operator()(GDALDatasetH dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<void, Close>;
-
-/// The bundled terrain, bilinear between its posts, with so many columns and rows.
-void write_dem(const std::string& path, int columns, int rows) {
-    const Dataset from(GDALOpen(TINSMITH_SOURCE_DIR "/tests/data/jacksboro.tif", GA_ReadOnly));
-    if (!from) throw std::runtime_error("tests/data/jacksboro.tif cannot be read");
-    GDALRasterBandH band = GDALGetRasterBand(from.get(), 1);
-    const int width = GDALGetRasterXSize(from.get()), height = GDALGetRasterYSize(from.get());
-    std::vector<float> posts(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    GDALRasterIOExtraArg bilinear;
-    INIT_RASTERIO_EXTRA_ARG(bilinear);
-    bilinear.eResampleAlg = GRIORA_Bilinear;
-    const CPLErr read = GDALRasterIOEx(band, GF_Read, 0, 0, width, height, posts.data(), columns,
-                                       rows, GDT_Float32, 0, 0, &bilinear);
-    const Dataset to(GDALCreate(GDALGetDriverByName("GTiff"), path.c_str(), columns, rows, 1,
-                                GDT_Float32, nullptr));
-    if (read != CE_None || !to) throw std::runtime_error(path + " cannot be written");
-    double place[6];
-    GDALGetGeoTransform(from.get(), place);
-    place[1] *= static_cast<double>(width) / columns;
-    place[5] *= static_cast<double>(height) / rows;
-    GDALSetGeoTransform(to.get(), place);
-    GDALSetSpatialRef(to.get(), GDALGetSpatialRef(from.get()));
-    if (GDALRasterIO(GDALGetRasterBand(to.get(), 1), GF_Write, 0, 0, columns, rows, posts.data(),
-                     columns, rows, GDT_Float32, 0, 0) != CE_None)
-        throw std::runtime_error(path + " cannot be written");
-}
 
 std::string bytes_of_file(const std::string& path) {
     std::ifstream in(path, std::ios::binary | std::ios::ate);
@@ -91,16 +54,13 @@ void read_and_write(const std::string& path, std::size_t bytes) {
 }
 
 int run(std::size_t triangles, int runs) {
-    GDALAllRegister();
     const std::string path = "dem_bench.tif";
-    const auto rows = static_cast<int>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
-    write_dem(path, rows, rows);
+    const std::size_t written = write_dem(path, triangles);
     const core::Tin tin = ready_to_edit(path);
     std::printf(
         "%zu triangles, %.1f bytes each\n", tin.triangle_count(),
         static_cast<double>(tin.memory_bytes()) / static_cast<double>(tin.triangle_count()));
-    const auto cells = static_cast<std::size_t>(rows - 1);
-    if (tin.triangle_count() != 2 * cells * cells) return EXIT_FAILURE;
+    if (tin.triangle_count() != written) return EXIT_FAILURE;
     const std::size_t bytes = tin.memory_bytes();
     const auto timed = [](auto call) -> Side {
         return [call] {

@@ -16,6 +16,7 @@
 #include "api/formats/gltf.hpp"
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
+#include "tests/bench/dem.hpp"
 #include "tests/bench/http_peers.hpp"
 #include "tests/bench/terrains.hpp"
 #include "tests/bench/timing.hpp"
@@ -29,6 +30,7 @@ constexpr const char* kUsage =
     "usage: http_bench PART [RUNS]\n"
     "  edit   90 segments into the bundled terrain, the answer a delta\n"
     "  get    a mesh of 1,000,000 triangles for the second time and on; needs nginx\n"
+    "  memory what a session of 1,000,000 and of 10,000,000 triangles takes; needs 4 GB\n"
     "  smoke  one edit; fails where it or the least one is refused\n"
     "TINSMITH names the program where it is not that of the release build.\n";
 
@@ -215,10 +217,45 @@ int compare_get(int runs) {
     return EXIT_SUCCESS;
 }
 
+/// What the server has more than before it had the session: the mesh, its history, all of it.
+int measure_memory() {
+    std::printf(
+        "| triangles | bytes a triangle at rest | after an edit and its undo | edit ms | most "
+        "while "
+        "it was read |\n|--:|--:|--:|--:|--:|\n");
+    for (const std::size_t wanted : {std::size_t{1'000'000}, std::size_t{10'000'000}}) {
+        const Folder folder;
+        Program server(serve_words(folder));
+        Connection connection(port_in(folder.of("port"), server));
+        const std::size_t triangles = write_dem(folder.of("dem.tif"), wanted);
+        // What the readers hold for good, once for all sessions, is not this one's.
+        well(connection.ask("PUT", "/v1/sessions/first", "Content-Type: image/tiff\r\n",
+                            bundled("jacksboro.tif")));
+        well(connection.ask("DELETE", "/v1/sessions/first", ""));
+        const std::size_t before = server.resident_bytes();
+        well(connection.ask("PUT", "/v1/sessions/bench", "Content-Type: image/tiff\r\n",
+                            bytes_of(folder.of("dem.tif"))));
+        const auto each = [&](std::size_t bytes) {
+            return static_cast<double>(bytes - before) / static_cast<double>(triangles);
+        };
+        const double at_rest = each(server.resident_bytes()), most = each(server.peak_bytes());
+        const double start = wall_ms();
+        well(connection.ask("POST", "/v1/sessions/bench/polygons",
+                            "Content-Type: application/geo+json\r\n", bundled("lake.geojson")));
+        const double ms = wall_ms() - start;
+        well(connection.ask("POST", "/v1/sessions/bench/undo", ""));
+        std::printf("| %zu | %.1f | %.1f | %.2f | %.1f |\n", triangles, at_rest,
+                    each(server.resident_bytes()), ms, most);
+        std::fflush(stdout);
+    }
+    return EXIT_SUCCESS;
+}
+
 int run(const std::string& part, int runs) {
     if (part == "smoke") return compare_edit(1);
     if (part == "edit") return compare_edit(runs);
     if (part == "get") return compare_get(runs);
+    if (part == "memory") return measure_memory();
     std::fputs(kUsage, stderr);
     return 2;
 }

@@ -40,6 +40,21 @@ bool Program::is_running() {
     return waitpid(pid_, nullptr, WNOHANG) == 0;
 }
 
+std::size_t Program::resident_bytes() const {
+    std::ifstream in("/proc/" + std::to_string(pid_) + "/statm");
+    std::size_t all = 0, resident = 0;
+    if (!(in >> all >> resident)) throw std::runtime_error("the program ended");
+    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::size_t Program::peak_bytes() const {
+    std::ifstream in("/proc/" + std::to_string(pid_) + "/status");
+    for (std::string line; std::getline(in, line);) {
+        if (line.starts_with("VmHWM:")) return std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
+    }
+    throw std::runtime_error("the program ended");
+}
+
 Connection::Connection(int port) : port_(port) {
     open();
 }

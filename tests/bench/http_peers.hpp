@@ -19,6 +19,10 @@ class Program {
     Program& operator=(const Program&) = delete;
 
     bool is_running();
+    /// Bytes of memory that it has now.
+    std::size_t resident_bytes() const;
+    /// The most that it has had.
+    std::size_t peak_bytes() const;
 
   private:
     pid_t pid_ = -1;
