@@ -136,15 +136,35 @@ class Startup {
     std::future<std::string> error_;  ///< last: its thread uses the above
 };
 
+/// False, and whoever waits for a signal is woken: it has failed.
+bool serve_or_wake(HttpServer& server) {
+    bool fine = false;
+    try {
+        fine = server.serve();
+    } catch (const std::exception& failure) {
+        log_event(LogLevel::Error, "defect", failure.what());
+    }
+    if (!fine) StopSignals::wake();
+    return fine;
+}
+
+class StopAtTheEnd {
+  public:
+    explicit StopAtTheEnd(HttpServer& server) : server_(server) {}
+    ~StopAtTheEnd() { server_.stop(); }
+    StopAtTheEnd(const StopAtTheEnd&) = delete;
+    StopAtTheEnd& operator=(const StopAtTheEnd&) = delete;
+
+  private:
+    HttpServer& server_;
+};
+
 /// Serves until a signal comes or the start fails, then drains. An exit code. Where the time is up
 /// the watchdog ends the process.
 int serve_until_stopped(HttpServer& server, Services& services, const ServeConfig& config, int port,
                         const StopSignals& signals, Watchdog& watchdog, ServingKeys& keys) {
-    auto served = std::async(std::launch::async, [&server] {
-        const bool fine = server.serve();
-        if (!fine) StopSignals::wake();
-        return fine;
-    });
+    auto served = std::async(std::launch::async, [&server] { return serve_or_wake(server); });
+    const StopAtTheEnd stop_server(server);  // whatever is thrown below: `served` is waited for
     const std::string url = url_of(config.http.host, port);
     log_event(LogLevel::Info, "listening", "listening on " + url + ", not ready yet",
               {{"url", url}});

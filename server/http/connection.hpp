@@ -14,8 +14,7 @@ namespace tinsmith::server {
 /// What all connections are together.
 struct ConnectionTotals {
     std::atomic<std::size_t> connections{0};
-    std::atomic<std::size_t> unread_bytes{0};  ///< that they hold in memory
-    std::atomic<std::uint64_t> sent_away{0};   ///< closed to make room, since the beginning
+    std::atomic<std::uint64_t> sent_away{0};  ///< closed to make room, since the beginning
 };
 
 /// A numeric address and a port; an empty address where the system does not tell.
@@ -62,19 +61,17 @@ class Connection {
 
     /// Tells the client that no more comes, and reads on.
     void end_sending() const;
-    /// Throws away what is there. False: the connection has ended.
-    bool discard();
+    /// Throws away what is there, at most a mebibyte.
+    Got discard();
 
   private:
     bool wait_for(short events, std::chrono::milliseconds longest) const;
-    void count_unread();
 
     const int socket_;
     ConnectionTotals& totals_;
     std::string buffer_;
     std::size_t used_ = 0;
     std::size_t looked_at_ = 0;  ///< bytes of `unread` in which no head ends
-    std::size_t counted_ = 0;    ///< in the totals
 };
 
 }  // namespace tinsmith::server

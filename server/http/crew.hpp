@@ -24,8 +24,9 @@ class Crew {
     Crew(const Crew&) = delete;
     Crew& operator=(const Crew&) = delete;
 
-    /// From any thread. After `finish` what comes is dropped.
-    void add(Arrival arrival);
+    /// From any thread. False: too much waits already, or it has finished, and the arrival is as it
+    /// was.
+    bool add(Arrival& arrival);
 
     /// Serves what has been added, then ends the threads. Once or more, from one thread that is
     /// none of them.
@@ -37,7 +38,11 @@ class Crew {
     bool has_spare() const { return !is_behind() && busy_ <= threads_.size() / 2; }
 
   private:
+    /// What waits may hold so much together. (What serves takes one request at a time.)
+    static constexpr std::size_t kMaxQueuedBytes = std::size_t{8} << 20;
+
     void work();
+    void serve_alone(Arrival arrival) noexcept;
 
     const Serve serve_;
     std::atomic<std::size_t> waiting_{0};
@@ -45,6 +50,7 @@ class Crew {
     std::mutex mutex_;                  ///< guards the next
     std::condition_variable changed_;
     std::deque<Arrival> arrivals_;
+    std::size_t bytes_ = 0;  ///< that they hold
     bool finishing_ = false;
     std::vector<std::thread> threads_;
 };

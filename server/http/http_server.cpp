@@ -19,6 +19,11 @@ namespace {
 /// needs it: the way over the reception costs one that asks again at once two changes of threads.
 constexpr std::chrono::milliseconds kLookAgain{50};
 
+const api::Problem kTooManyWait{
+    api::ProblemType::NotReady,
+    "More requests wait than the server holds; nothing was done. Send it again.",
+    {}};
+
 ReceptionOptions reception_of(const HttpOptions& options) {
     ReceptionOptions reception;
     reception.max_connections = allow_connections(options.max_connections);
@@ -39,7 +44,7 @@ class HttpServer::Impl {
         error = listener.error;
         if (listener.socket < 0) return 0;
         reception_.emplace(listener.socket, reception_of(options_), *totals_,
-                           [this](Arrival arrival) { crew_->add(std::move(arrival)); });
+                           [this](Arrival arrival) { receive(std::move(arrival)); });
         return listener.port;
     }
 
@@ -56,25 +61,38 @@ class HttpServer::Impl {
 
     void stop() {
         drain();
-        reception_->stop();
+        if (reception_) reception_->stop();
     }
 
   private:
     using After = Protocol::After;
 
+    /// Has it answered by a thread, or refuses it at once: without waiting, since it may be the
+    /// reception's thread.
+    void receive(Arrival arrival) {
+        if (crew_->add(arrival)) return;
+        const After after = protocol_.refuse_bytes(*arrival.connection, kTooManyWait, false);
+        if (after == After::Part) reception_->part(std::move(arrival.connection));
+    }
+
     /// Answers what has arrived, and what comes next on its connection, as long as nobody else
     /// waits for the thread.
     void attend(Arrival arrival) {
         Connection& connection = *arrival.connection;
-        After after = answer(connection, arrival.state);
-        while (after == After::Keep && is_next_here(connection)) {
-            if (crew_->is_behind()) {
-                crew_->add({std::move(arrival.connection), Arrival::State::Whole});
+        After after = answer(connection, std::exchange(arrival.state, Arrival::State::Whole));
+        while (after == After::Keep) {
+            if (!is_next_here(connection)) {
+                arrival.connection = reception_->keep(std::move(arrival.connection));
+                if (!arrival.connection) return;
+                // The server stops: what has come by now is the last.
+                if (connection.receive(kMaxHeadBytes) != Connection::Got::Bytes ||
+                    !is_whole(connection))
+                    return;
+            } else if (crew_->is_behind() && crew_->add(arrival)) {
                 return;
             }
             after = answer(connection, Arrival::State::Whole);
         }
-        if (after == After::Keep) reception_->keep(std::move(arrival.connection));
         if (after == After::Part) reception_->part(std::move(arrival.connection));
     }
 
@@ -88,8 +106,8 @@ class HttpServer::Impl {
                  "The request's head took too long to arrive; nothing was done. Send it again.",
                  {}});
         }
-        const std::string_view head = connection.unread().substr(0, connection.size_of_head());
-        if (const auto problem = check_head_bytes(head))
+        const std::size_t size = connection.size_of_head();
+        if (const auto problem = check_head_bytes(connection.unread().substr(0, size)))
             return protocol_.refuse_bytes(connection, *problem);
         return protocol_.exchange(connection);
     }

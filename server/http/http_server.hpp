@@ -21,7 +21,7 @@ struct HttpOptions {
     std::size_t max_connections = 10'000;     ///< open at the same time
     std::chrono::seconds keep_alive{60};      ///< for which a connection may idle
     std::chrono::seconds head_deadline{10};   ///< for a whole head
-    std::chrono::seconds wait{5};             ///< for one read or write of a body or an answer
+    std::chrono::seconds wait{10};            ///< for one read or write of a body or an answer
     std::chrono::seconds body_deadline{120};  ///< for a whole body
     /// For bodies and answers the time above is given in any case, and more to who sends or takes
     /// at least so many bytes a second.

@@ -198,10 +198,10 @@ class Protocol::Impl {
         if (!fine) return After::Drop;
         const std::string_view body = exchange.answer.sent();
         if (!stream.flush(exchange.is_for_head ? std::string_view() : body)) return After::Drop;
-        return closed || exchange.close || draining_ ? After::Part : After::Keep;
+        return closed || exchange.close ? After::Part : After::Keep;
     }
 
-    After refuse_bytes(Connection& connection, const api::Problem& problem) const {
+    After refuse_bytes(Connection& connection, const api::Problem& problem, bool may_wait) const {
         Request request = request_of_bytes(connection.unread());
         request.id = random_hex(8);
         request.remote_address = connection.remote().first;
@@ -211,7 +211,8 @@ class Protocol::Impl {
         calls_.told(request, response, 0.0);
         const std::string text =
             write_last_answer(response, api::problem_title(problem.type), request.method != "HEAD");
-        ConnectionStream stream(connection, options_.wait, pace_);
+        ConnectionStream stream(connection, may_wait ? options_.wait : std::chrono::seconds(0),
+                                pace_);
         return stream.flush(text) ? After::Part : After::Drop;
     }
 
@@ -255,7 +256,8 @@ class Protocol::Impl {
     void tell_of_connection(httplib::Response& out) const {
         for (const char* name : {"Connection", "Keep-Alive", "Accept-Ranges"})
             out.headers.erase(name);
-        if (exchange_here().close || draining_) {
+        if (draining_) exchange_here().close = true;  // as it is told, so it is done
+        if (exchange_here().close) {
             out.set_header("Connection", "close");
         } else {
             out.set_header("Keep-Alive", "timeout=" + std::to_string(options_.keep_alive.count()));
@@ -387,8 +389,9 @@ Protocol::After Protocol::exchange(Connection& connection) const {
     return impl_->exchange(connection);
 }
 
-Protocol::After Protocol::refuse_bytes(Connection& connection, const api::Problem& problem) const {
-    return impl_->refuse_bytes(connection, problem);
+Protocol::After Protocol::refuse_bytes(Connection& connection, const api::Problem& problem,
+                                       bool may_wait) const {
+    return impl_->refuse_bytes(connection, problem, may_wait);
 }
 
 void Protocol::drain() {

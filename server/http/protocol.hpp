@@ -30,8 +30,9 @@ class Protocol {
     /// thread. Requires: the head is whole.
     After exchange(Connection& connection) const;
 
-    /// Answers what is no request, or none yet.
-    After refuse_bytes(Connection& connection, const api::Problem& problem) const;
+    /// Answers what is no request, or none yet. `may_wait`: for the client to take the answer.
+    After refuse_bytes(Connection& connection, const api::Problem& problem,
+                       bool may_wait = true) const;
 
     /// From now on each answer ends its connection.
     void drain();

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <new>
 #include <utility>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -22,16 +24,18 @@ using Clock = std::chrono::steady_clock;
 
 /// Other threads put connections into lines without waking this one, which looks this often.
 constexpr milliseconds kTick{200};
-/// While it takes no connections since there are too many.
-constexpr milliseconds kTickWhenFull{20};
+/// While it takes no connections.
+constexpr milliseconds kTickWhenPaused{20};
+/// After the system had no memory or no descriptor for one, and nobody could make room.
+constexpr milliseconds kPauseWithoutMemory{100};
 /// Connections taken before the others are looked at again.
 constexpr int kAcceptedAtOnce = 64;
 
-void watch(int events, int operation, int socket, std::uint32_t what) {
+bool watch(int events, int operation, int socket, std::uint32_t what) {
     epoll_event event{};
     event.events = what;
     event.data.fd = socket;
-    ::epoll_ctl(events, operation, socket, &event);
+    return ::epoll_ctl(events, operation, socket, &event) == 0;
 }
 
 constexpr std::uint32_t kOnce = EPOLLIN | EPOLLRDHUP | EPOLLONESHOT;
@@ -93,28 +97,60 @@ bool Reception::run() {
         if (count < 0 && errno != EINTR) failed_ = true;
         {
             const std::lock_guard lock(mutex_);
-            for (int i = 0; i < count && !stopping_; ++i) {
-                const int socket = events[static_cast<std::size_t>(i)].data.fd;
-                if (socket == listener_) {
-                    accept_all(arrived);
-                } else if (const auto found = places_.find(socket); found != places_.end()) {
-                    look_at(found->second, arrived);
-                }
-            }
+            for (int i = 0; i < count && !stopping_; ++i)
+                take_turn(events[static_cast<std::size_t>(i)].data.fd, arrived);
             end_waits(arrived);
-            listen(totals_.connections < options_.max_connections);
+            const bool has_room =
+                totals_.connections < options_.max_connections || !places_.empty();
+            listen(has_room && Clock::now() >= paused_until_);
         }
-        for (Arrival& each : arrived)
-            receive_(std::move(each));
-        arrived.clear();
+        hand_over(arrived);
     }
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-    ::close(std::exchange(listener_, -1));
-    places_.clear();
-    for (Line& each : lines_)
-        each.clear();
+    {
+        const std::lock_guard lock(mutex_);
+        take_last_turn(arrived);
+        closed_ = true;
+    }
+    hand_over(arrived);
     return !failed_;
+}
+
+/// One that has no memory loses its turn and its connection; the others go on.
+void Reception::take_turn(int socket, std::vector<Arrival>& arrived) try {
+    if (socket == listener_) {
+        accept_all(arrived);
+    } else if (const auto found = places_.find(socket); found != places_.end()) {
+        look_at(found->second, arrived);
+    }
+} catch (const std::bad_alloc&) {
+    if (const auto found = places_.find(socket); found != places_.end()) send_away(found->second);
+    if (socket == listener_) pause(kPauseWithoutMemory);
+}
+
+/// What has come by now was sent in good faith.
+void Reception::take_last_turn(std::vector<Arrival>& arrived) {
+    if (!failed_) take_turn(listener_, arrived);
+    ::close(std::exchange(listener_, -1));
+    std::vector<int> sockets;
+    for (const Wait wait : {Wait::Idle, Wait::First, Wait::Head})
+        for (const Waiting& each : line(wait))
+            sockets.push_back(each.connection->socket());
+    for (const int socket : sockets)
+        take_turn(socket, arrived);
+    for (const Wait wait : {Wait::Idle, Wait::First, Wait::Head})
+        while (!line(wait).empty())
+            leave(line(wait).begin());
+}
+
+void Reception::hand_over(std::vector<Arrival>& arrived) {
+    for (Arrival& each : arrived) {
+        try {
+            receive_(std::move(each));
+        } catch (const std::bad_alloc&) {
+            ++totals_.sent_away;
+        }
+    }
+    arrived.clear();
 }
 
 void Reception::stop() {
@@ -124,16 +160,21 @@ void Reception::stop() {
 }
 
 int Reception::next_look() const {
-    if (!listening_) return static_cast<int>(kTickWhenFull.count());
+    if (!listening_) return static_cast<int>(kTickWhenPaused.count());
     return totals_.connections == 0 ? -1 : static_cast<int>(kTick.count());
 }
 
 Reception::Place Reception::enter(std::unique_ptr<Connection> connection, Wait wait) {
-    Line& all = line(wait);
     const int socket = connection->socket();
-    all.push_back({std::move(connection), wait, Clock::now()});
-    const Place place = std::prev(all.end());
-    places_.emplace(socket, place);
+    const std::size_t bytes = wait == Wait::Head ? connection->unread().size() : 0;
+    const Time now = Clock::now();
+    Line one;
+    one.push_back({std::move(connection), wait, now, now, bytes});
+    const Place place = one.begin();
+    places_.emplace(socket, place);  // the last that may fail
+    Line& all = line(wait);
+    all.splice(all.end(), one);
+    head_bytes_ += bytes;
     return place;
 }
 
@@ -141,14 +182,14 @@ std::unique_ptr<Connection> Reception::enter_unless_closed(std::unique_ptr<Conne
                                                            Wait wait) {
     const std::lock_guard lock(mutex_);
     if (closed_) return connection;
-    const Place place = enter(std::move(connection), wait);
-    watch(events_, EPOLL_CTL_MOD, place->connection->socket(), kOnce);
+    look_again(enter(std::move(connection), wait));
     return nullptr;
 }
 
 std::unique_ptr<Connection> Reception::leave(Place place) {
     std::unique_ptr<Connection> connection = std::move(place->connection);
     places_.erase(connection->socket());
+    head_bytes_ -= place->bytes;
     line(place->wait).erase(place);
     return connection;
 }
@@ -175,14 +216,14 @@ void Reception::send_away(Place place) {
     ++totals_.sent_away;
 }
 
-void Reception::keep(std::unique_ptr<Connection> connection) {
+std::unique_ptr<Connection> Reception::keep(std::unique_ptr<Connection> connection) {
     const Wait wait = connection->unread().empty() ? Wait::Idle : Wait::Head;
-    enter_unless_closed(std::move(connection), wait);
+    return enter_unless_closed(std::move(connection), wait);
 }
 
 void Reception::part(std::unique_ptr<Connection> connection) {
     connection->end_sending();
-    if (!connection->discard()) return;
+    if (connection->discard() == Connection::Got::End) return;
     connection = enter_unless_closed(std::move(connection), Wait::Parting);
     if (connection && connection->wait_readable(kPartingAtTheEnd)) connection->discard();
 }
@@ -197,35 +238,52 @@ bool Reception::accept_one(std::vector<Arrival>& arrived) {
     const bool is_full = totals_.connections >= options_.max_connections;
     if (is_full && places_.empty()) return false;
     int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
-        if (!send_one_away()) {
-            listen(false);
-            return false;
-        }
+    // Told before anybody looks whether one is there.
+    if (socket < 0 && errno == EMFILE && has_pending() && send_one_away())
         socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    }
     if (socket < 0) {
-        failed_ = errno == EBADF || errno == EINVAL || errno == ENOTSOCK;
-        return errno == ECONNABORTED || errno == EINTR;
+        const int error = errno;
+        failed_ = error == EBADF || error == EINVAL || error == ENOTSOCK;
+        if (error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM)
+            pause(kPauseWithoutMemory);
+        return error == ECONNABORTED || error == EINTR;
     }
     if (is_full) send_one_away();
-    const Place place = enter(std::make_unique<Connection>(socket, totals_), Wait::First);
-    watch(events_, EPOLL_CTL_ADD, socket, kNotYet);
+    std::unique_ptr<Connection> connection;
+    try {
+        connection = std::make_unique<Connection>(socket, totals_);
+    } catch (const std::bad_alloc&) {
+        ::close(socket);
+        throw;
+    }
+    const Place place = enter(std::move(connection), Wait::First);
+    if (!watch(events_, EPOLL_CTL_ADD, socket, kNotYet)) {
+        send_away(place);
+        return true;
+    }
     look_at(place, arrived);
     return true;
 }
 
+bool Reception::has_pending() const {
+    pollfd one{listener_, POLLIN, 0};
+    return ::poll(&one, 1, 0) > 0;
+}
+
+void Reception::pause(milliseconds longest) {
+    paused_until_ = Clock::now() + longest;
+}
+
+void Reception::look_again(Place place) {
+    if (!watch(events_, EPOLL_CTL_MOD, place->connection->socket(), kOnce)) send_away(place);
+}
+
 void Reception::look_at(Place place, std::vector<Arrival>& arrived) {
-    Connection& connection = *place->connection;
     if (place->wait == Wait::Parting) {
-        if (connection.discard()) {
-            watch(events_, EPOLL_CTL_MOD, connection.socket(), kOnce);
-        } else {
-            leave(place);
-        }
+        look_at_parting(place);
         return;
     }
-    switch (connection.receive(kMaxHeadBytes)) {
+    switch (place->connection->receive(kMaxHeadBytes)) {
         case Connection::Got::End:
             leave(place);
             return;
@@ -235,13 +293,24 @@ void Reception::look_at(Place place, std::vector<Arrival>& arrived) {
         case Connection::Got::Nothing:
             break;
     }
-    watch(events_, EPOLL_CTL_MOD, connection.socket(), kOnce);
+    look_again(place);
+}
+
+void Reception::look_at_parting(Place place) {
+    const Connection::Got got = place->connection->discard();
+    if (got == Connection::Got::End || Clock::now() - place->begun > options_.longest_parting) {
+        leave(place);
+        return;
+    }
+    if (got == Connection::Got::Bytes) move_to(place, Wait::Parting);
+    look_again(place);
 }
 
 void Reception::look_at_bytes(Place place, std::vector<Arrival>& arrived) {
     Connection& connection = *place->connection;
     const std::size_t size = connection.size_of_head();
-    if (size > kMaxHeadBytes || (size == 0 && connection.unread().size() > kMaxHeadBytes)) {
+    const std::size_t unread = connection.unread().size();
+    if (size > kMaxHeadBytes || (size == 0 && unread > kMaxHeadBytes)) {
         arrived.push_back({leave(place), Arrival::State::TooLarge});
         return;
     }
@@ -249,10 +318,14 @@ void Reception::look_at_bytes(Place place, std::vector<Arrival>& arrived) {
         arrived.push_back({leave(place), Arrival::State::Whole});
         return;
     }
-    if (place->wait != Wait::Head) move_to(place, Wait::Head);
-    watch(events_, EPOLL_CTL_MOD, connection.socket(), kOnce);
+    if (unread > 0) {  // else it was an empty line between two requests
+        if (place->wait != Wait::Head) move_to(place, Wait::Head);
+        head_bytes_ += unread - place->bytes;
+        place->bytes = unread;
+    }
+    look_again(place);
     Line& heads = line(Wait::Head);
-    while (totals_.unread_bytes > options_.max_unread_bytes && !heads.empty())
+    while (head_bytes_ > options_.max_head_bytes)
         send_away(heads.begin());
 }
 

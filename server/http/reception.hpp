@@ -19,10 +19,11 @@ namespace tinsmith::server {
 
 struct ReceptionOptions {
     std::size_t max_connections = 10'000;
-    std::size_t max_unread_bytes = std::size_t{8} << 20;  ///< of all connections together
-    std::chrono::milliseconds head{10'000};               ///< for a whole head to arrive
-    std::chrono::milliseconds idle{60'000};               ///< between two requests
-    std::chrono::milliseconds parting{1'000};             ///< for a client to read the last answer
+    std::size_t max_head_bytes = std::size_t{8} << 20;  ///< of all heads that are not whole
+    std::chrono::milliseconds head{10'000};             ///< for a whole head to arrive
+    std::chrono::milliseconds idle{60'000};             ///< between two requests
+    std::chrono::milliseconds parting{2'000};  ///< for a client to read the last answer, ...
+    std::chrono::milliseconds longest_parting{10'000};  ///< ... also while it still sends
 };
 
 /// What came to the end of its wait.
@@ -39,7 +40,7 @@ struct Arrival {
 /// Where connections wait, all on one thread, until the head of a request is there.
 ///
 /// Laws: a connection that waits costs no thread and at most `kMaxHeadBytes`, all of them at most
-/// `max_unread_bytes`, and none waits for ever. Where there are too many or they hold too much, the
+/// `max_head_bytes`, and none waits for ever. Where there are too many or they hold too much, the
 /// one that has waited longest goes, those first that have nothing left to ask. So who comes and
 /// asks at once gets in, however many sit there.
 /// Cost: a system call or three for a request. epoll(7).
@@ -54,14 +55,16 @@ class Reception {
     Reception(const Reception&) = delete;
     Reception& operator=(const Reception&) = delete;
 
-    /// Until `stop`. False: the listening socket failed.
+    /// Until `stop`: what has arrived by then is handed over. False: the listening socket failed.
+    /// What cannot be taken for want of memory is closed.
     bool run();
 
     /// Closes the listening socket and all connections that wait. From any thread, once or more.
     void stop();
 
-    /// Waits for the next request. From any thread.
-    void keep(std::unique_ptr<Connection> connection);
+    /// Waits for the next request; after the end of `run` the connection comes back. From any
+    /// thread.
+    [[nodiscard]] std::unique_ptr<Connection> keep(std::unique_ptr<Connection> connection);
 
     /// Closes once the client has read the last answer: an end with bytes unread resets the
     /// connection, and the client could lose the answer before it has read it. From any thread.
@@ -76,6 +79,8 @@ class Reception {
         std::unique_ptr<Connection> connection;
         Wait wait = Wait::First;
         Time since{};
+        Time begun{};           ///< of a parting
+        std::size_t bytes = 0;  ///< of a head
     };
     /// All that wait for the same, the longest first.
     using Line = std::list<Waiting>;
@@ -94,10 +99,17 @@ class Reception {
 
     void accept_all(std::vector<Arrival>& arrived);
     bool accept_one(std::vector<Arrival>& arrived);
+    void take_turn(int socket, std::vector<Arrival>& arrived);
+    void take_last_turn(std::vector<Arrival>& arrived);
+    void hand_over(std::vector<Arrival>& arrived);
     void look_at(Place place, std::vector<Arrival>& arrived);
+    void look_at_parting(Place place);
+    void look_again(Place place);
     void look_at_bytes(Place place, std::vector<Arrival>& arrived);
     void end_waits(std::vector<Arrival>& arrived);
     void listen(bool wanted);
+    void pause(std::chrono::milliseconds longest);
+    bool has_pending() const;
     int next_look() const;
 
     const ReceptionOptions options_;
@@ -109,10 +121,12 @@ class Reception {
     std::atomic<bool> stopping_{false};
     bool listening_ = false;
     bool failed_ = false;
+    Time paused_until_{};
 
     mutable std::mutex mutex_;  ///< guards the next
     std::array<Line, 4> lines_;
     std::unordered_map<int, Place> places_;  ///< by socket
+    std::size_t head_bytes_ = 0;             ///< of all in the line of heads
     bool closed_ = false;
 };
 

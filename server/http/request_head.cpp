@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "api/field_list.hpp"
 #include "server/limits.hpp"
 
 namespace tinsmith::server {
@@ -25,6 +26,48 @@ bool is_control(char c) {
     return (byte < 0x20 && c != '\t') || byte == 0x7F;
 }
 
+/// A token (RFC 9110 5.6.2): other programs see in a name with a blank the header that it looks
+/// like.
+bool is_token(std::string_view name) {
+    static constexpr std::string_view kOthers = "!#$%&'*+-.^_`|~";
+    return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+        const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        return is_letter || (c >= '0' && c <= '9') || kOthers.find(c) != std::string_view::npos;
+    });
+}
+
+/// A method, a target and a version, with one blank between them.
+std::optional<Problem> check_request_line(std::string_view line) {
+    const std::size_t method = line.find(' ');
+    const std::size_t target = line.rfind(' ');
+    if (method == std::string_view::npos || target <= method + 1 ||
+        !is_token(line.substr(0, method)) ||
+        line.substr(method + 1, target - method - 1).find(' ') != std::string_view::npos)
+        return bad("The request line is not a method, a target and a version.");
+    const std::string_view version = line.substr(target + 1);
+    if (version != "HTTP/1.1" && version != "HTTP/1.0")
+        return bad("The request is not HTTP/1.1, which is what is spoken here.");
+    return std::nullopt;
+}
+
+/// The library passes over a header without a value and decodes %-escapes in one: where the body
+/// ends, nobody may read differently.
+std::optional<Problem> check_header(std::string_view line) {
+    if (line.front() == ' ' || line.front() == '\t')
+        return bad("A header goes on in a second line: send it in one.");
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos) return bad("A header has no colon.");
+    const std::string_view name = line.substr(0, colon);
+    if (!is_token(name))
+        return bad("A header's name has a blank or another character that none may have.");
+    const std::string key = api::lower_case(name);
+    if (key != "content-length" && key != "transfer-encoding") return std::nullopt;
+    const std::string_view value = api::trimmed(line.substr(colon + 1));
+    if (value.empty() || value.find('%') != std::string_view::npos)
+        return bad("The header " + key + " has no value that can be read.");
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::size_t size_of_head(std::string_view bytes, std::size_t looked_at) {
@@ -44,10 +87,8 @@ std::optional<Problem> check_head_bytes(std::string_view head) {
         if (line.empty()) break;
         if (std::any_of(line.begin(), line.end(), is_control))
             return bad("The head has a control character.");
-        if (lines == 0) continue;
-        if (line.front() == ' ' || line.front() == '\t')
-            return bad("A header goes on in a second line: send it in one.");
-        if (line.find(':') == std::string_view::npos) return bad("A header has no colon.");
+        auto problem = lines == 0 ? check_request_line(line) : check_header(line);
+        if (problem) return problem;
     }
     if (lines > kMaxHeaders + 1) {
         return Problem{ProblemType::TooManyHeaders,

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <thread>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -79,7 +81,13 @@ void Connection::end_sending() const {
 
 bool Connection::fill() {
     std::array<char, 65536> part{};
-    const ssize_t got = ::recv(socket_, part.data(), part.size(), 0);
+    std::size_t most = part.size();
+    if (bytes_a_second_ > 0) {
+        constexpr std::size_t kSteps = 50;
+        most = std::min(most, bytes_a_second_ / kSteps);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1000 / kSteps));
+    }
+    const ssize_t got = ::recv(socket_, part.data(), most, 0);
     if (got <= 0) return false;
     buffer_.append(part.data(), static_cast<std::size_t>(got));
     return true;

@@ -38,6 +38,9 @@ class Connection {
     /// No more bytes will come from this side.
     void end_sending() const;
 
+    /// From here on no faster than that.
+    void read_at_most(std::size_t bytes_a_second) { bytes_a_second_ = bytes_a_second; }
+
     /// The next answer. `to_head`: it has no body whatever its headers say.
     Answer read(bool to_head = false);
 
@@ -48,6 +51,7 @@ class Connection {
     bool fill();
 
     int socket_ = -1;
+    std::size_t bytes_a_second_ = 0;  ///< 0: as fast as it comes
     std::string buffer_;
 };
 

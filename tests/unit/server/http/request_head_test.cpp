@@ -51,6 +51,14 @@ TEST(RequestHead, RefusesWhatOthersReadDifferently) {
           std::string(" X: a\r\n"), std::string("\n")})
         EXPECT_EQ(verdict(kGet + line + "\r\n"), 400) << testing::PrintToString(line);
     EXPECT_EQ(verdict("GET / HTTP/1.1\nHost: x\r\n\r\n"), 400);
+    for (const std::string header : {"Content-Length:", "Content-Length: ", "Content-Length: %32",
+                                     "Transfer-Encoding:", "TRANSFER-ENCODING:\t",
+                                     "Content-Length : 5", "Content Length: 5", ":", ": 5"})
+        EXPECT_EQ(verdict(kGet + header + "\r\n\r\n"), 400) << header;
+    for (const std::string line :
+         {" GET / HTTP/1.1", "GET  / HTTP/1.1", "GET / HTTP/1.1 ", "GET / x HTTP/1.1", "GET /",
+          "GET HTTP/1.1", "GET / HTTP/2.0", "GET / http/1.1", "G(T / HTTP/1.1", "GET\t/\tHTTP/1.1"})
+        EXPECT_EQ(verdict(line + "\r\nHost: x\r\n\r\n"), 400) << line;
     EXPECT_EQ(verdict("GET /\x01 HTTP/1.1\r\nHost: x\r\n\r\n"), 400);
 }
 

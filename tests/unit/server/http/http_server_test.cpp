@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http/http_server.hpp"
+
+#include <atomic>
+#include <list>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "server/reply.hpp"
+#include "tests/e2e/wire.hpp"
+
+namespace tinsmith::server {
+namespace {
+
+using Client = e2e::Connection;
+
+const std::string kGet = e2e::request_text("GET", "/");
+
+/// A server that answers every request alike.
+class ServerAtWork {
+  public:
+    explicit ServerAtWork(HttpOptions options, std::string body = "{}")
+        : body_(std::move(body)), server_(with_free_port(options), calls()) {
+        std::string error;
+        port_ = server_.bind(error);
+        EXPECT_EQ(error, "");
+        thread_ = std::thread([this] { EXPECT_TRUE(server_.serve()); });
+    }
+    ~ServerAtWork() { stop(); }
+
+    int port() const { return port_; }
+    std::size_t connections() const { return server_.connections()->connections; }
+    void stop() {
+        server_.stop();
+        if (thread_.joinable()) thread_.join();
+    }
+
+    std::atomic<int> answered{0};
+
+  private:
+    static HttpOptions with_free_port(HttpOptions options) {
+        options.port = 0;
+        return options;
+    }
+
+    HttpServer::Calls calls() {
+        return {[](Request&, bool) { return std::nullopt; },
+                [this](const Request& request) {
+                    ++answered;
+                    if (request.path == "/throws") throw std::bad_alloc();
+                    return ok("application/json", body_);
+                },
+                [](const Request&, Response&) {}, [](const Request&, const Response&, double) {}};
+    }
+
+    const std::string body_;
+    HttpServer server_;
+    int port_ = 0;
+    std::thread thread_;
+};
+
+bool becomes(const std::function<bool()>& is_so) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!is_so()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return true;
+}
+
+TEST(HttpServerAlone, AnswersWhatHasArrivedWhenItStops) {
+    ServerAtWork server({});
+    std::list<Client> clients;
+    for (int i = 0; i < 40; ++i) {
+        clients.emplace_back(server.port());
+        clients.back().send(kGet);
+        ASSERT_EQ(clients.back().read().status, 200);
+    }
+    for (Client& client : clients)
+        client.send(kGet);
+    server.stop();
+    for (Client& client : clients) {
+        EXPECT_EQ(client.read().status, 200);
+        EXPECT_TRUE(client.is_closed());
+    }
+}
+
+TEST(HttpServerAlone, SendsAllToWhoReadsSlowly) {
+    HttpOptions options;
+    options.wait = std::chrono::seconds(1);
+    options.patience = std::chrono::seconds(1);
+    options.slowest = 100'000;
+    const std::string body(6'000'000, 'x');
+    ServerAtWork server(options, body);
+    Client client(server.port());
+    client.send(kGet);
+    client.read_at_most(2'000'000);  // bytes a second
+    EXPECT_EQ(client.read().body.size(), body.size());
+}
+
+TEST(HttpServerAlone, CutsWhoReadsNothing) {
+    HttpOptions options;
+    options.wait = std::chrono::seconds(1);
+    ServerAtWork server(options, std::string(50'000'000, 'x'));
+    const Client client(server.port());
+    client.send(kGet);
+    ASSERT_TRUE(becomes([&] { return server.answered == 1; }));
+    EXPECT_TRUE(becomes([&] { return server.connections() == 0; }));
+}
+
+TEST(HttpServerAlone, GoesOnAfterARequestWithoutMemory) {
+    ServerAtWork server({});
+    for (int i = 0; i < 100; ++i) {
+        Client client(server.port());
+        client.send(e2e::request_text("GET", "/throws"));
+        EXPECT_EQ(client.read().status, 500);
+    }
+    Client client(server.port());
+    client.send(kGet);
+    EXPECT_EQ(client.read().status, 200);
+}
+
+/// More clients than there may be connections, some of which only sit there: each is answered or
+/// sent away, and then it comes again.
+TEST(HttpServerAlone, ServesACrowdOverFewConnections) {
+    HttpOptions options;
+    options.threads = 4;
+    options.max_connections = 6;
+    ServerAtWork server(options);
+    std::atomic<int> answered{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 8; ++t) {
+        threads.emplace_back([&, t] {
+            for (int done = 0; done < 50;) {
+                Client client(server.port());
+                if (t % 4 == 0) client.send("GET / HT");
+                for (int i = 0; i < 5 && done < 50; ++i) {
+                    client.send(t % 4 == 0 && i == 0 ? kGet.substr(8) : kGet);
+                    if (client.read().status != 200) break;
+                    ++done;
+                    ++answered;
+                }
+            }
+        });
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(answered, 8 * 50);
+}
+
+TEST(HttpServerAlone, MayStopBeforeItServes) {
+    HttpOptions options;
+    options.port = 0;
+    HttpServer server(options, {});
+    server.stop();
+    std::string error;
+    ASSERT_NE(server.bind(error), 0) << error;
+    server.stop();
+    EXPECT_TRUE(server.serve());
+}
+
+}  // namespace
+}  // namespace tinsmith::server
