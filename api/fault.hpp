@@ -21,6 +21,7 @@ struct Fault {
     std::optional<std::array<double, 2>> coordinate = std::nullopt;  ///< plan position, if any
     std::optional<std::uint64_t> index = std::nullopt;  ///< of a vertex or triangle, if any
     std::string parameter = {};  ///< of the query or command line, where that is at fault
+    std::string limit = {};      ///< that was met, as /v1/limits calls it; empty: by its code
 };
 
 /// All faults of one input in the order they were met; never more than `kMaxFaults`.

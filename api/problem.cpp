@@ -70,6 +70,7 @@ constexpr std::array kTable{
     Row{JobUnfinished, "job-unfinished", "The job has not ended yet", 409},
     Row{Stopped, "stopped", "The work was stopped", 503},
     Row{TooManyJobs, "too-many-jobs", "No room for another job", 503},
+    Row{Busy, "busy", "The server has as many requests as it takes", 503},
     Row{NotReady, "not-ready", "The server is not ready", 503},
     Row{Internal, "internal", "The server failed", 500},
 };
@@ -80,6 +81,10 @@ const Row& row_of(ProblemType type) {
     return found == kTable.end() ? kTable.back() : *found;
 }
 
+constexpr std::string_view kAboutTime =
+    " It may have taken longer than max_edit_seconds of /v1/limits, its job was deleted, or the "
+    "server is stopping.";
+
 ProblemType type_of_error(core::ErrorCode code) {
     switch (code) {
         case core::ErrorCode::MeshTooLarge:
@@ -87,6 +92,7 @@ ProblemType type_of_error(core::ErrorCode code) {
         case core::ErrorCode::CrossingBudget:
         case core::ErrorCode::TriangleBudget:
         case core::ErrorCode::IdBudget:
+        case core::ErrorCode::MemoryBudget:
             return BudgetExceeded;
         case core::ErrorCode::Cancelled:
             return Stopped;
@@ -97,12 +103,44 @@ ProblemType type_of_error(core::ErrorCode code) {
     }
 }
 
+/// The limit that a fault has met, as /v1/limits calls it; empty: none that is anybody's to set.
+std::string_view limit_met(std::string_view code) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kLimits{{
+        {"TOO_MANY_VERTICES", "max_vertices"},
+        {"TOO_MANY_TRIANGLES", "max_triangles"},
+        {"TOO_MANY_POLYGON_VERTICES", "max_polygon_vertices"},
+        {"TOO_MANY_POINTS", "max_points"},
+        {"CROSSING_BUDGET", "max_crossings"},
+        {"TRIANGLE_BUDGET", "max_triangles"},
+        {"MEMORY_BUDGET", "max_session_bytes"},
+    }};
+    const auto* found = std::find_if(kLimits.begin(), kLimits.end(),
+                                     [code](const auto& row) { return row.first == code; });
+    return found == kLimits.end() ? std::string_view() : found->second;
+}
+
+/// Each names its limit, unless it is known better where it was made.
+void name_limits(Faults& faults) {
+    for (Fault& fault : faults)
+        if (fault.limit.empty()) fault.limit = limit_met(fault.code);
+}
+
+/// A sentence about the first limit that was met.
+std::string about_limit(const Faults& faults) {
+    for (const Fault& fault : faults) {
+        if (fault.limit.empty()) continue;
+        return " This is the limit " + fault.limit + "; GET /v1/limits has its value.";
+    }
+    return {};
+}
+
 nlohmann::ordered_json json_of_fault(const Fault& fault) {
     nlohmann::ordered_json json{{"code", fault.code}, {"detail", fault.detail}};
     if (!fault.pointer.empty()) json["pointer"] = fault.pointer;
     if (!fault.parameter.empty()) json["parameter"] = fault.parameter;
     if (fault.coordinate) json["coordinate"] = {(*fault.coordinate)[0], (*fault.coordinate)[1]};
     if (fault.index) json["index"] = *fault.index;
+    if (!fault.limit.empty()) json["limit"] = fault.limit;
     return json;
 }
 
@@ -175,16 +213,20 @@ Problem problem_of_faults(FaultKind kind, Faults faults) {
             type = Stopped;
             break;
     }
-    return {type, summary_of(faults), std::move(faults)};
+    name_limits(faults);
+    std::string detail = summary_of(faults) + about_limit(faults);
+    if (kind == FaultKind::Stopped) detail += kAboutTime;
+    return {type, std::move(detail), std::move(faults)};
 }
 
 Problem problem_of_errors(const core::Errors& errors, Faults faults) {
     const ProblemType type = errors.empty() ? Internal : type_of_error(errors.front().code);
-    std::string detail = summary_of(faults);
+    name_limits(faults);
+    std::string detail = summary_of(faults) + about_limit(faults);
     if (type == Stopped) {
         detail =
-            "The edit ran longer than this server allows, its job was deleted, or the server is "
-            "stopping; the session is as it was. Send smaller parts, or try again.";
+            "The edit ran longer than max_edit_seconds of /v1/limits, its job was deleted, or the "
+            "server is stopping; the session is as it was. Send smaller parts, or try again.";
     }
     return {type, std::move(detail), std::move(faults)};
 }

@@ -59,6 +59,7 @@ enum class ProblemType {
     JobUnfinished,  ///< its result is asked for
     Stopped,        ///< the work was cancelled: time limit, shutdown, or its job was deleted
     TooManyJobs,
+    Busy,
     NotReady,  ///< the server starts, stops, or lacks what it needs
     Internal,
 };

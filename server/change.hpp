@@ -32,12 +32,11 @@ bool is_expected(const Asked& asked, std::uint64_t version) {
     return !asked.expected_version || *asked.expected_version == version;
 }
 
-/// The limits of a run, tightened to what a mesh of `triangles` may still grow by.
-inline RunLimits tightened(RunLimits limits, std::size_t triangles, std::size_t max_triangles) {
-    const std::size_t room = max_triangles - std::min(max_triangles, triangles);
-    limits.max_new_triangles = std::min<std::uint64_t>(limits.max_new_triangles, room);
-    return limits;
-}
+/// The limits of a run, tightened to what a session of that size may still grow by.
+RunLimits tightened(RunLimits limits, const SessionSize& now, const SessionSize& most);
+
+/// What a run said, where memory is what allowed no more triangles: that.
+core::Errors named_by(const RunLimits& limits, core::Errors errors);
 
 /// How a version came about, copied out.
 struct ChangeCopy {

@@ -93,56 +93,56 @@ CLI::Validator digit_first() {
             "", "digit_first"};
 }
 
+/// A limit or a quota: where it is kept, and what --help says.
+struct NumberFlag {
+    const char* name;
+    std::size_t* value;
+    const char* text;
+    bool is_bytes = false;
+};
+
 void add_limits(CLI::App& app, Limits& limits) {
-    const auto add = [&app](const std::string& name, auto& value, const std::string& text) {
-        return add_setting(app, name, value, text);
+    const NumberFlag flags[] = {
+        {"max_body_bytes", &limits.max_body_bytes, "Largest request body (256MB, 1GB)", true},
+        {"max_memory_bytes", &limits.max_memory_bytes, "Of all meshes together", true},
+        {"max_session_bytes", &limits.max_session_bytes, "Of one session", true},
+        {"max_sessions", &limits.max_sessions, "Sessions at the same time"},
+        {"max_vertices", &limits.max_vertices, "Vertices of a terrain"},
+        {"max_triangles", &limits.max_triangles, "Triangles of a session"},
+        {"max_polygon_vertices", &limits.max_polygon_vertices, "Positions in one request"},
+        {"max_history", &limits.max_history, "Operations that a session can take back"},
+        {"max_history_bytes", &limits.max_history_bytes, "What they may hold, for one session",
+         true},
+        {"max_crossings", &limits.max_crossings, "Edges crossed by one request"},
+        {"max_requests", &limits.max_requests, "Requests at the same time"},
+        {"max_points", &limits.max_points, "Points of one question for elevations"},
+        {"max_profile_crossings", &limits.max_profile_crossings, "Edges crossed by one profile"},
+        {"max_jobs", &limits.max_jobs, "Jobs in any state"},
+        {"max_queued_jobs", &limits.max_queued_jobs, "Jobs that wait for a thread"},
+        {"job_bytes", &limits.job_bytes, "Bytes of their requests and answers", true},
+        {"mesh_cache", &limits.mesh_cache, "Bytes of encoded meshes to keep; 0: none", true},
+        {"kept_answers", &limits.kept_answers, "Bytes of answers to keep for retries by key", true},
     };
-    // What is added last by `transform` is asked first.
-    const auto bytes = CLI::AsSizeValue(false);
-    add("max_body_bytes", limits.max_body_bytes, "Largest request body (256MB, 1GB)")
-        ->transform(bytes)
-        ->transform(digit_first());
-    add("max_memory_bytes", limits.max_memory_bytes, "Of all meshes together")
-        ->transform(bytes)
-        ->transform(digit_first());
-    add("max_sessions", limits.max_sessions, "Sessions at the same time")->check(digit_first());
-    add("max_vertices", limits.max_vertices, "Vertices of a terrain")->check(digit_first());
-    add("max_triangles", limits.max_triangles, "Triangles of a session")->check(digit_first());
-    add("max_history", limits.max_history, "Operations that a session can take back")
+    for (const NumberFlag& flag : flags) {
+        CLI::Option* const option = add_setting(app, flag.name, *flag.value, flag.text);
+        // What is added last by `transform` is asked first.
+        if (flag.is_bytes) option->transform(CLI::AsSizeValue(false));
+        option->transform(digit_first());
+        // Without an operation kept or a request taken there is nothing to serve.
+        if (flag.value == &limits.max_history || flag.value == &limits.max_requests)
+            option->check(CLI::PositiveNumber);
+    }
+    add_setting(app, "max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
         ->check(digit_first())
         ->check(CLI::PositiveNumber);
-    add("max_history_bytes", limits.max_history_bytes, "What they may hold, for one session")
-        ->transform(bytes)
-        ->transform(digit_first());
-    add("max_crossings", limits.max_crossings, "Edges crossed by one request")
-        ->check(digit_first());
-    add("max_edit_seconds", limits.max_edit_seconds, "Time for one edit")
-        ->check(digit_first())
-        ->check(CLI::PositiveNumber);
-    add("max_points", limits.max_points, "Points of one question for elevations")
-        ->check(digit_first());
-    add("max_profile_crossings", limits.max_profile_crossings, "Edges crossed by one profile")
-        ->check(digit_first());
-    add("job_threads", limits.job_threads, "Requests done as jobs at the same time")
+    add_setting(app, "job_threads", limits.job_threads, "Requests done as jobs at the same time")
         ->check(CLI::Range(1, 64));
-    add("max_jobs", limits.max_jobs, "Jobs in any state")->check(digit_first());
-    add("max_queued_jobs", limits.max_queued_jobs, "Jobs that wait for a thread")
+    add_setting(app, "job_seconds", limits.job_seconds, "Time for which answers of jobs are kept")
         ->check(digit_first());
-    add("job_bytes", limits.job_bytes, "Bytes of their requests and answers")
-        ->transform(bytes)
-        ->transform(digit_first());
-    add("job_seconds", limits.job_seconds, "Time for which answers of jobs are kept")
-        ->check(digit_first());
-    add("mesh_cache", limits.mesh_cache, "Bytes of encoded meshes to keep; 0: none")
-        ->transform(bytes)
-        ->transform(digit_first());
-    add("session_ttl", limits.session_ttl,
-        "Seconds for which a session lives that nobody asks for; 0: for ever")
+    add_setting(app, "session_ttl", limits.session_ttl,
+                "Seconds for which a session lives that nobody asks for; 0: for ever")
         ->check(digit_first())
         ->check(CLI::Range(std::uint64_t{0}, kLongestLife));
-    add("kept_answers", limits.kept_answers, "Bytes of answers to keep for retries by key")
-        ->transform(bytes)
-        ->transform(digit_first());
 }
 
 /// "https://maps.example:8443": what browsers send as Origin, to the letter.
@@ -285,16 +285,34 @@ CLI::App* add_backup(CLI::App& app, BackupConfig& config) {
 }
 
 void add_quotas(CLI::App& app, KeyQuotas& quotas) {
-    app.add_option("--max-sessions", quotas.max_sessions, "Sessions of the key")
-        ->check(digit_first());
-    app.add_option("--max-memory-bytes", quotas.max_memory_bytes,
-                   "Of its sessions, in memory or not (256MB, 1GB)")
-        ->transform(CLI::AsSizeValue(false))
-        ->transform(digit_first());
-    app.add_option("--max-requests", quotas.max_requests, "Requests of the key at the same time")
-        ->check(digit_first());
+    struct QuotaFlag {
+        const char* name;
+        std::optional<std::size_t>* value;
+        const char* text;
+        bool is_bytes = false;
+    };
+    const QuotaFlag flags[] = {
+        {"max_sessions", &quotas.max_sessions, "Sessions of the key"},
+        {"max_memory_bytes", &quotas.max_memory_bytes,
+         "Of its sessions, in memory or not (256MB, 1GB)", true},
+        {"max_session_bytes", &quotas.max_session_bytes, "Of each of its sessions", true},
+        {"max_requests", &quotas.max_requests, "Requests of the key at the same time"},
+        {"max_body_bytes", &quotas.max_body_bytes, "Largest request body", true},
+        {"max_vertices", &quotas.max_vertices, "Vertices of a terrain"},
+        {"max_triangles", &quotas.max_triangles, "Triangles of a session"},
+        {"max_polygon_vertices", &quotas.max_polygon_vertices, "Positions in one request"},
+        {"max_crossings", &quotas.max_crossings, "Edges crossed by one request"},
+    };
+    for (const QuotaFlag& flag : flags) {
+        CLI::Option* const option = app.add_option(flag_of(flag.name), *flag.value, flag.text);
+        if (flag.is_bytes) option->transform(CLI::AsSizeValue(false));
+        option->transform(digit_first());
+    }
     app.add_option("--max-requests-per-second", quotas.max_requests_per_second,
                    "Requests that it may begin in a second")
+        ->check(digit_first())
+        ->check(CLI::PositiveNumber);
+    app.add_option("--max-edit-seconds", quotas.max_edit_seconds, "Time for one edit")
         ->check(digit_first())
         ->check(CLI::PositiveNumber);
 }

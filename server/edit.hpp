@@ -21,7 +21,7 @@ namespace tinsmith::server {
 struct PendingEdit {
     EditOperation operation;
     RunLimits limits = {};
-    std::size_t max_triangles = SIZE_MAX;  ///< of the session after the edit
+    SessionSize most = {};  ///< of the session after the edit
     bool dry_run = false;
     bool want_mesh = false;   ///< the answer shall hold the mesh that came of it
     bool want_delta = false;  ///< the answer shall hold what changed; not of a dry run

@@ -131,7 +131,7 @@ std::variant<PendingEdit, NoEdit> make_edit(const Session& session, const api::E
     PendingEdit edit;
     edit.limits = rerun_limits(limits, stopping);
     edit.limits.max_crossings = limits.max_crossings;
-    edit.max_triangles = limits.max_triangles;
+    edit.most = {limits.max_triangles, limits.max_session_bytes};
 
     const auto polygon = copy_polygon(session, request.polygon);
     if (!polygon) return NoEdit(PolygonFault::NotThere);

@@ -11,12 +11,15 @@ struct Limits {
     std::size_t max_body_bytes = std::size_t{256} << 20;
     std::size_t max_sessions = 64;
     std::size_t max_memory_bytes = std::size_t{8} << 30;     ///< of all meshes together
+    std::size_t max_session_bytes = std::size_t{4} << 30;    ///< of one session
     std::size_t max_vertices = 10'000'000;                   ///< of one session
     std::size_t max_triangles = 20'000'000;                  ///< of one session
+    std::size_t max_polygon_vertices = 1'000'000;            ///< of one request
     std::size_t max_history = 1000;                          ///< operations that a session keeps
     std::size_t max_history_bytes = std::size_t{256} << 20;  ///< that they hold, of one session
     std::uint64_t max_crossings = 50'000'000;                ///< of one request
     double max_edit_seconds = 60.0;                          ///< of one request
+    std::size_t max_requests = 64;                           ///< at the same time, without jobs
     std::size_t max_points = 100'000;                        ///< of one question for elevations
     std::uint64_t max_profile_crossings = 1'000'000;   ///< of one profile: its answer's points
     std::size_t job_threads = 2;                       ///< requests done as jobs at a time

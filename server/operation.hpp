@@ -42,6 +42,7 @@ struct RunLimits {
     /// Refuse an operation that finds nothing of what it is about. One that is run again and no
     /// longer finds it does nothing, as the refused one would have done.
     bool must_find = false;
+    bool is_bound_by_memory = false;  ///< that is why there are no more new triangles
 };
 
 /// An operation that the mesh holds, with all that takes it back bit for bit. Never changed once

@@ -63,6 +63,12 @@ struct Polygon {
     const core::ShapeReport& own_report() const { return report.shapes[shape]; }
 };
 
+/// How large a session is, or may become.
+struct SessionSize {
+    std::size_t triangles = SIZE_MAX;
+    std::size_t bytes = SIZE_MAX;
+};
+
 /// The shapes of one request, and where each comes from (one for one with the shapes).
 struct PolygonEdit {
     std::vector<core::Shape> shapes;
@@ -74,7 +80,7 @@ struct PolygonEdit {
     bool want_delta = false;   ///< the answer shall hold what changed; not of a dry run
     bool want_angles = false;  ///< the answer shall count smallest angles
     std::optional<std::uint64_t> expected_version;  ///< from If-Match
-    std::size_t max_triangles = SIZE_MAX;           ///< of the session after the edit
+    SessionSize most = {};                          ///< of the session after the edit
 };
 
 struct PolygonResult {

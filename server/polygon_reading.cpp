@@ -122,7 +122,7 @@ RunLimits rerun_limits(const Limits& limits, const std::atomic<bool>& stopping) 
 
 void set_budgets(PolygonEdit& edit, const Limits& limits, const std::atomic<bool>& stopping) {
     RunLimits run = rerun_limits(limits, stopping);
-    edit.max_triangles = limits.max_triangles;
+    edit.most = {limits.max_triangles, limits.max_session_bytes};
     edit.options.max_crossings = limits.max_crossings;
     edit.options.clock_ms = std::move(run.clock_ms);
     edit.options.cancelled = std::move(run.cancelled);

@@ -10,6 +10,7 @@
 #include "api/formats/read_limits.hpp"
 #include "server/jobs.hpp"
 #include "server/kept_answers.hpp"
+#include "server/keys/asker.hpp"
 #include "server/limits.hpp"
 #include "server/mesh_cache.hpp"
 #include "server/metrics/metrics.hpp"
@@ -35,10 +36,14 @@ struct Services {
           jobs({the_limits.job_threads, the_limits.max_queued_jobs, the_limits.max_jobs,
                 the_limits.job_bytes, std::chrono::seconds(the_limits.job_seconds)}) {}
 
-    api::ReadLimits read_limits() const {
+    /// What holds for who asks.
+    Limits limits_of(const Asker& asker) const { return within_quotas(limits, asker.quotas); }
+    api::ReadLimits read_limits(const Asker& asker = {}) const {
+        const Limits all = limits_of(asker);
         api::ReadLimits read;
-        read.max_vertices = limits.max_vertices;
-        read.max_triangles = limits.max_triangles;
+        read.max_vertices = all.max_vertices;
+        read.max_triangles = all.max_triangles;
+        read.max_polygon_vertices = all.max_polygon_vertices;
         read.progress = reading_progress();
         return read;
     }

@@ -21,14 +21,14 @@ std::vector<std::string> new_ids(std::uint64_t first, std::size_t count) {
 }
 
 /// The caller's budget, tightened to what the session may still grow by.
-RunLimits limits_of(const PolygonEdit& edit, const core::Tin& tin) {
+RunLimits limits_of(const PolygonEdit& edit, const SessionSize& now) {
     RunLimits limits;
     limits.cancelled = edit.options.cancelled;
     limits.clock_ms = edit.options.clock_ms;
     limits.progress = edit.options.progress;
     limits.max_crossings = edit.options.max_crossings;
     limits.max_new_triangles = edit.options.max_new_triangles;
-    return tightened(std::move(limits), tin.triangle_count(), edit.max_triangles);
+    return tightened(std::move(limits), now, edit.most);
 }
 
 /// The edit as it is kept. Its budgets stay behind.
@@ -156,6 +156,10 @@ void Session::refresh_view() noexcept {
     view_.memory_bytes = mesh_bytes_ + history_.memory_bytes();
 }
 
+SessionSize Session::size_now() const {
+    return {tin_.triangle_count(), tin_.memory_bytes() + history_.memory_bytes()};
+}
+
 core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kind,
                                           std::vector<std::string> polygons,
                                           const RunLimits& limits) {
@@ -220,13 +224,13 @@ PolygonOutcome Session::integrate(PolygonEdit edit) {
     const auto lock = lock_to_write();
     const std::uint64_t before = version();
     if (!is_expected(edit, before)) return VersionMismatch{before};
-    const RunLimits limits = limits_of(edit, tin_);
+    const RunLimits limits = limits_of(edit, size_now());
     PolygonResult result;
     result.version = before + 1;
     result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
     const auto applied = perform(operation_of(edit, result.polygon_ids), ChangeKind::Polygons,
                                  result.polygon_ids, limits);
-    if (!applied) return applied.errors();
+    if (!applied) return named_by(limits, applied.errors());
     result.report = (*applied)->report;
     next_polygon_ += result.polygon_ids.size();
     refresh_view();
@@ -257,15 +261,16 @@ PolygonOutcome Session::integrate_dry(const PolygonEdit& edit) const {
     auto lock = lock_to_read();
     if (!is_expected(edit, version())) return VersionMismatch{version()};
     core::Tin trial = tin_;
+    const RunLimits limits = limits_of(edit, size_now());
     PolygonResult result;
     result.version = version();
     result.polygon_ids = new_ids(next_polygon_, edit.shapes.size());
     lock.unlock();
     core::IntegrateOptions options = edit.options;
-    options.max_new_triangles = limits_of(edit, trial).max_new_triangles;
+    options.max_new_triangles = limits.max_new_triangles;
     core::Undo undo;
     auto report = core::integrate(trial, edit.shapes, options, edit.want_angles ? &undo : nullptr);
-    if (!report) return std::move(report.errors());
+    if (!report) return named_by(limits, std::move(report.errors()));
     if (edit.want_angles) result.angles = core::count_angles(trial, undo);
     result.report = std::make_shared<core::Report>(std::move(*report));
     if (edit.want_mesh) result.mesh = trial.to_data();

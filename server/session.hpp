@@ -196,6 +196,8 @@ class Session {
     /// `taken` were taken back and `done` were run. Returns the running digest.
     std::string log_change(const ChangeAsked& asked, std::span<const AppliedPtr> taken,
                            std::span<const AppliedPtr> done, const Stopwatch& watch) const;
+    /// Requires: a lock.
+    SessionSize size_now() const;
     SessionCounts counts_now(std::uint64_t version) const;
     void require_whole() const {
         if (is_lost_) throw StorageFault("The session has to be loaded again.");

@@ -13,10 +13,10 @@ EditOutcome Session::edit(PendingEdit edit) {
     if (!is_expected(edit, before)) return VersionMismatch{before};
     const std::string polygon = edit.operation.asked.polygon;
     if (!polygon_finder()(polygon)) return PolygonFault::NotThere;
-    const RunLimits limits = tightened(edit.limits, tin_.triangle_count(), edit.max_triangles);
+    const RunLimits limits = tightened(edit.limits, size_now(), edit.most);
     const auto applied = perform(std::make_shared<const Operation>(std::move(edit.operation)),
                                  ChangeKind::Edit, {polygon}, limits);
-    if (!applied) return applied.errors();
+    if (!applied) return named_by(limits, applied.errors());
     refresh_view();
     EditResult result{before + 1, (*applied)->answer, std::nullopt, std::nullopt};
     if (edit.want_mesh) result.mesh = mesh_if_possible();
@@ -35,8 +35,8 @@ EditOutcome Session::edit_dry(const PendingEdit& edit) const {
     const core::ShapeReport own = found->own_report();
     const core::Winding winding = found->request.winding;
     core::Tin trial = tin_;
+    const RunLimits limits = tightened(edit.limits, size_now(), edit.most);
     lock.unlock();
-    const RunLimits limits = tightened(edit.limits, trial.triangle_count(), edit.max_triangles);
     auto report =
         core::edit_region(trial, {shape, own.chains, own.outside}, winding, edit.operation.edit,
                           {limits.max_crossings,
@@ -45,7 +45,7 @@ EditOutcome Session::edit_dry(const PendingEdit& edit) const {
                            limits.cancelled,
                            limits.clock_ms,
                            limits.progress});
-    if (!report) return report.errors();
+    if (!report) return named_by(limits, report.errors());
     auto answer = std::make_shared<api::EditAnswer>(edit.operation.asked);
     report->apply_ms += answer->report.apply_ms;
     answer->report = *report;

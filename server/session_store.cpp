@@ -39,6 +39,8 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session, const A
     {
         const std::unique_lock lock(mutex_);
         if (entries_.contains(id)) return StoreRefusal::IdIsTaken;
+        if (entry->counts.memory_bytes > within_quotas(limits_, asker.quotas).max_session_bytes)
+            return StoreRefusal::TooLarge;
         if (const auto quota = refusal_of_quota(asker, entry->counts.memory_bytes)) return *quota;
         if (entries_.size() >= limits_.max_sessions) return StoreRefusal::TooMany;
         if (!make_room(entry->counts.memory_bytes, freed)) return StoreRefusal::NoMemory;
@@ -65,7 +67,8 @@ SessionStore::Added SessionStore::keep(std::shared_ptr<Session> session, const A
 
 std::optional<StoreRefusal> SessionStore::refusal_of_quota(const Asker& asker,
                                                            std::size_t bytes) const {
-    const auto& [max_sessions, max_memory, requests, rate] = asker.quotas;
+    const auto& max_sessions = asker.quotas.max_sessions;
+    const auto& max_memory = asker.quotas.max_memory_bytes;
     if (!max_sessions && !max_memory) return std::nullopt;
     const KeyShare share = share_now(asker.id);
     if (max_sessions && share.sessions >= *max_sessions) return StoreRefusal::TooManyOfKey;

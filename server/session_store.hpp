@@ -28,6 +28,7 @@ namespace tinsmith::server {
 /// Why a session could not be kept.
 enum class StoreRefusal {
     TooMany,        ///< Limits::max_sessions are there already
+    TooLarge,       ///< it is more than Limits::max_session_bytes
     NoMemory,       ///< Limits::max_memory_bytes would be passed
     IdIsTaken,      ///< the id of choice exists, whoever sees it
     TooManyOfKey,   ///< KeyQuotas::max_sessions of the asker are there already

@@ -110,9 +110,10 @@ class SceneReader {
     }
 
   private:
+    using MatrixPtr = std::shared_ptr<const GltfMatrix>;
     struct Placed {
         std::size_t node;
-        GltfMatrix matrix;
+        MatrixPtr around;  ///< of the nodes that it hangs on
         std::size_t depth;
     };
     using Line = std::array<core::Point3, 2>;
@@ -124,7 +125,8 @@ class SceneReader {
     void walk() {
         std::vector<bool> seen(model_.nodes.size(), false);
         std::vector<Placed> open;
-        const GltfMatrix still{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        const auto still = std::make_shared<const GltfMatrix>(
+            GltfMatrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
         for (std::size_t i = model_.roots.size(); i-- > 0;)
             open.push_back({model_.roots[i], still, 0});
         std::size_t done = 0;
@@ -143,18 +145,23 @@ class SceneReader {
             }
             seen[at.node] = true;
             const GltfNode& node = model_.nodes[at.node];
-            const GltfMatrix matrix = is_moved_only(at.matrix) && is_moved_only(node.matrix)
-                                          ? moved(at.matrix, node.matrix)
-                                          : product(at.matrix, node.matrix);
+            const MatrixPtr matrix = node.matrix ? std::make_shared<const GltfMatrix>(within(
+                                                       *at.around, model_.matrices[*node.matrix]))
+                                                 : at.around;
             for (std::size_t i = node.children.size(); i-- > 0;)
                 open.push_back({node.children[i], matrix, at.depth + 1});
-            if (node.mesh) read_mesh(*node.mesh, matrix, pointer);
+            if (node.mesh) read_mesh(*node.mesh, *matrix, pointer);
             is_skinned_ = is_skinned_ || node.is_skinned;
             share_ = static_cast<double>(++done) / static_cast<double>(seen.size());
             if (!is_stopped_ && limits_.progress && !limits_.progress(share_)) stop({});
         }
         if (terrain_.mesh.triangles.empty() && log_.empty())
             invalid("The scene has no triangle.", "/scenes");
+    }
+
+    static GltfMatrix within(const GltfMatrix& around, const GltfMatrix& own) {
+        return is_moved_only(around) && is_moved_only(own) ? moved(around, own)
+                                                           : product(around, own);
     }
 
     static GltfMatrix moved(GltfMatrix a, const GltfMatrix& b) {
@@ -187,7 +194,7 @@ class SceneReader {
             primitive.mode == kTriangles || primitive.mode == kStrip || primitive.mode == kFan;
         if (primitive.mode > kFan)
             return invalid("There is no mode " + std::to_string(primitive.mode) + ".",
-                           primitive.pointer + "/mode");
+                           primitive.pointer() + "/mode");
         if (!is_ground && !(model_.is_ours && primitive.mode == kLines)) {
             ++passed_over_;
             return;
@@ -200,23 +207,23 @@ class SceneReader {
         if (work_ > 4 * (limits_.max_vertices + 3 * limits_.max_triangles))
             return stop({"TOO_MANY_VERTICES",
                          "All primitives together have more vertices and indices than are taken.",
-                         primitive.pointer});
+                         primitive.pointer()});
         add(primitive, std::move(*geometry), matrix);
     }
 
     std::optional<Geometry> unpacked(const GltfPrimitive& primitive) {
         if (primitive.mode != kTriangles) {
-            invalid("Draco holds triangles only.", primitive.pointer);
+            invalid("Draco holds triangles only.", primitive.pointer());
             return std::nullopt;
         }
-        const auto bytes = accessors_.view_bytes(primitive.draco->view, primitive.pointer);
+        const auto bytes = accessors_.view_bytes(primitive.draco->view, primitive.pointer());
         if (!bytes) return std::nullopt;
         auto decoded = decode_draco(*bytes, primitive.draco->position_id,
                                     std::max(limits_.max_vertices, 3 * limits_.max_triangles),
                                     limits_.max_triangles - terrain_.mesh.triangles.size());
         if (const auto* no = std::get_if<DracoRefusal>(&decoded)) {
             log_.add(no->is_too_large ? FaultKind::TooLarge : FaultKind::Invalid,
-                     {"GLTF_DRACO", no->detail, primitive.pointer});
+                     {"GLTF_DRACO", no->detail, primitive.pointer()});
             return std::nullopt;
         }
         auto& mesh = std::get<DracoMesh>(decoded);
@@ -225,7 +232,7 @@ class SceneReader {
 
     std::optional<Geometry> plain(const GltfPrimitive& primitive) {
         if (!primitive.position) {
-            invalid("It has no POSITION.", primitive.pointer);
+            invalid("It has no POSITION.", primitive.pointer());
             return std::nullopt;
         }
         auto positions = accessors_.positions(*primitive.position);
@@ -244,7 +251,7 @@ class SceneReader {
             invalid("Index " + std::to_string(most - indices.begin()) + " names vertex " +
                         std::to_string(*most) + "; there are " + std::to_string(positions->size()) +
                         ".",
-                    primitive.pointer + "/indices");
+                    primitive.pointer() + "/indices");
             return std::nullopt;
         }
         const std::size_t each = primitive.mode == kTriangles ? 3
@@ -253,7 +260,7 @@ class SceneReader {
         if (indices.size() % each != 0) {
             invalid("Its " + std::to_string(indices.size()) + " indices are no multiple of " +
                         std::to_string(each) + ".",
-                    primitive.pointer + "/indices");
+                    primitive.pointer() + "/indices");
             return std::nullopt;
         }
         Geometry out{std::move(*positions), {}, {}};
@@ -272,25 +279,25 @@ class SceneReader {
             return stop({"TOO_MANY_TRIANGLES",
                          "The scene has more than " + std::to_string(limits_.max_triangles) +
                              " triangles; no more are taken.",
-                         primitive.pointer});
+                         primitive.pointer()});
         if (geometry.lines.size() > limits_.max_vertices - lines_.size())
             return stop({"TOO_MANY_LINES",
                          "The scene has more than " + std::to_string(limits_.max_vertices) +
                              " lines; no more are taken.",
-                         primitive.pointer});
+                         primitive.pointer()});
         const bool moved_only = is_moved_only(matrix);
         for (core::Point3& p : geometry.positions) {
             p = placed(matrix, moved_only, p);
             if (!model_.is_z_up) p = {p.x, 0.0 - p.z, p.y};
         }
-        starts_->push_back({mesh.triangles.size(), primitive.pointer});
+        starts_->push_back({mesh.triangles.size(), primitive.pointer()});
         const bool mirrored = is_mirrored(matrix);
         const auto numbers = numbers_of(geometry, primitive);
         if (mesh.vertices.size() > limits_.max_vertices)
             return stop({"TOO_MANY_VERTICES",
                          "The scene has more than " + std::to_string(limits_.max_vertices) +
                              " vertices; no more are taken.",
-                         primitive.pointer});
+                         primitive.pointer()});
         for (const auto& [a, b, c] : geometry.triangles) {
             mesh.triangles.push_back({numbers[a], numbers[b], numbers[c]});
             if (mirrored) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
@@ -321,7 +328,7 @@ class SceneReader {
             Fault fault{"COORDINATE_OUT_OF_RANGE",
                         "Vertex " + std::to_string(v) +
                             " has a coordinate that is not finite, or beyond 1e9.",
-                        primitive.pointer};
+                        primitive.pointer()};
             fault.index = v;
             log_.add(FaultKind::Invalid, std::move(fault));
             return 0;

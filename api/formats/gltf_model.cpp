@@ -5,21 +5,17 @@
 #include <cmath>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "api/formats/base64.hpp"
 #include "api/formats/glb_chunks.hpp"
+#include "api/formats/gltf_document.hpp"
 #include "api/formats/json_reader.hpp"
-#include "api/formats/json_size.hpp"
+#include "api/formats/json_text.hpp"
 
 namespace tinsmith::api {
 
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr JsonLimits kDocument{4'000'000, 100};
-constexpr std::size_t kMostIndex = std::size_t{1} << 40;  ///< no count or offset is beyond
+using json::JsonText;
 
 /// Extensions that change nothing about where the triangles are; a trailing star: all such.
 constexpr std::string_view kHarmless[] = {"KHR_draco_mesh_compression",
@@ -42,16 +38,20 @@ bool is_harmless(std::string_view extension) {
     });
 }
 
-class ModelReader {
+class ModelReader : private GltfDocument {
   public:
-    explicit ModelReader(FaultLog& log) : log_(log) {}
+    explicit ModelReader(FaultLog& log) : GltfDocument(log) {}
 
     std::optional<GltfModel> read(std::string_view bytes) {
         const auto chunks = split_glb(bytes, log_);
         if (!chunks) return std::nullopt;
         const std::size_t before = log_.size();
-        Json document;
-        if (!parse(chunks->json, document)) return std::nullopt;
+        if (!is_sound(chunks->json)) return std::nullopt;
+        const JsonText document(chunks->json);
+        if (!document.is_object()) {
+            fault(FaultKind::Syntax, "GLTF_SYNTAX", "A glTF is a JSON object.");
+            return std::nullopt;
+        }
         read_asset(document);
         read_extensions(document);
         read_buffers(document, chunks->bin);
@@ -65,115 +65,9 @@ class ModelReader {
     }
 
   private:
-    void fault(FaultKind kind, std::string code, std::string detail, std::string pointer = {}) {
-        log_.add(kind, {std::move(code), std::move(detail), std::move(pointer)});
-    }
-    void invalid(std::string detail, std::string pointer) {
-        fault(FaultKind::Invalid, "GLTF_INVALID", std::move(detail), std::move(pointer));
-    }
-
-    bool parse(std::string_view text, Json& document) {
-        const JsonSound seen = look_through_json(text, kDocument);
-        if (!seen.is_sound) {
-            if (seen.is_too_much)
-                fault(FaultKind::TooLarge, "GLTF_DOCUMENT",
-                      "The file's JSON is nested deeper than " + std::to_string(kDocument.depth) +
-                          " or has more than " + std::to_string(kDocument.values) + " values.");
-            else
-                fault(FaultKind::Syntax, "GLTF_SYNTAX",
-                      "The file's JSON cannot be read at byte " + std::to_string(seen.wrong_byte) +
-                          ".");
-            return false;
-        }
-        document = Json::parse(text.begin(), text.end());
-        if (document.is_object()) return true;
-        fault(FaultKind::Syntax, "GLTF_SYNTAX", "A glTF is a JSON object.");
-        return false;
-    }
-
-    // What members hold. A member that is there and of another kind is a fault.
-
-    const Json* member(const Json& object, const char* name) const {
-        if (!object.is_object()) return nullptr;
-        const auto found = object.find(name);
-        return found == object.end() ? nullptr : &*found;
-    }
-    std::optional<std::size_t> whole(const Json& value, const std::string& pointer) {
-        if (value.is_number_unsigned() && value.get<std::uint64_t>() <= kMostIndex)
-            return value.get<std::size_t>();
-        if (value.is_number_float()) {
-            const double number = value.get<double>();
-            if (number >= 0.0 && number <= 1e12 && number == std::floor(number))
-                return static_cast<std::size_t>(number);
-        }
-        invalid("A whole number of 0 or more belongs here.", pointer);
-        return std::nullopt;
-    }
-    std::optional<std::size_t> index(const Json& object, const char* name,
-                                     const std::string& pointer) {
-        const Json* value = member(object, name);
-        return value == nullptr ? std::nullopt : whole(*value, pointer + "/" + name);
-    }
-    std::size_t number(const Json& object, const char* name, const std::string& pointer,
-                       std::size_t otherwise) {
-        return index(object, name, pointer).value_or(otherwise);
-    }
-    std::size_t needed(const Json& object, const char* name, const std::string& pointer) {
-        if (member(object, name) == nullptr)
-            invalid(std::string("There is no \"") + name + "\" here.", pointer);
-        return number(object, name, pointer, 0);
-    }
-    std::string text(const Json& object, const char* name) const {
-        const Json* value = member(object, name);
-        return value != nullptr && value->is_string() ? value->get<std::string>() : std::string();
-    }
-    bool flag(const Json& object, const char* name) const {
-        const Json* value = member(object, name);
-        return value != nullptr && value->is_boolean() && value->get<bool>();
-    }
-    /// Calls `what` with each element of the list and its pointer; elements are objects.
-    template <typename What>
-    void each(const Json& object, const char* name, const std::string& pointer, What what) {
-        const Json* list = member(object, name);
-        if (list == nullptr) return;
-        const std::string here = pointer + "/" + name;
-        if (!list->is_array()) return invalid("A list belongs here.", here);
-        for (std::size_t i = 0; i < list->size(); ++i) {
-            const std::string place = here + "/" + std::to_string(i);
-            if ((*list)[i].is_object()) {
-                what((*list)[i], place);
-            } else {
-                invalid("An object belongs here.", place);
-                what(Json::object(), place);
-            }
-        }
-    }
-    const Json* extension(const Json& object, const char* name) const {
-        const Json* all = member(object, "extensions");
-        const Json* one = all == nullptr ? nullptr : member(*all, name);
-        return one != nullptr && one->is_object() ? one : nullptr;
-    }
-    template <std::size_t N>
-    bool read_numbers(const Json& object, const char* name, const std::string& pointer,
-                      std::array<double, N>& out) {
-        const Json* list = member(object, name);
-        if (list == nullptr) return false;
-        const bool fits =
-            list->is_array() && list->size() == N &&
-            std::all_of(list->begin(), list->end(), [](const Json& n) { return n.is_number(); });
-        if (!fits) {
-            invalid("A list of " + std::to_string(N) + " numbers belongs here.",
-                    pointer + "/" + name);
-            return false;
-        }
-        for (std::size_t i = 0; i < N; ++i)
-            out[i] = (*list)[i].get<double>();
-        return true;
-    }
-
-    void read_asset(const Json& document) {
-        const Json* asset = member(document, "asset");
-        if (asset == nullptr || !asset->is_object())
+    void read_asset(const JsonText& document) {
+        const auto asset = document.member("asset");
+        if (!asset || !asset->is_object())
             return invalid("There is no \"asset\": is this a glTF?", "");
         if (!text(*asset, "version").starts_with("2."))
             fault(FaultKind::Unsupported, "GLTF_VERSION", "Only glTF 2.0 is read.",
@@ -181,11 +75,13 @@ class ModelReader {
         model_.is_ours = text(*asset, "generator") == "Tinsmith";
     }
 
-    void read_extensions(const Json& document) {
-        const Json* list = member(document, "extensionsRequired");
-        if (list == nullptr || !list->is_array()) return;
-        for (std::size_t i = 0; i < list->size(); ++i) {
-            const std::string name = (*list)[i].is_string() ? (*list)[i].get<std::string>() : "";
+    void read_extensions(const JsonText& document) {
+        const auto list = document.member("extensionsRequired");
+        if (!list || !list->is_array()) return;
+        std::size_t i = 0;
+        for (JsonText::Elements all(*list); const auto element = all.next(); ++i) {
+            if (log_.full()) return;
+            const std::string name = text_of(*element);
             if (is_harmless(name)) continue;
             fault(FaultKind::Unsupported, "GLTF_EXTENSION",
                   "The file cannot be read without the extension " + json::quoted(name) +
@@ -202,95 +98,109 @@ class ModelReader {
                     pointer + "/byteLength");
     }
 
-    void read_buffers(const Json& document, std::optional<std::string_view> bin) {
+    void read_buffers(const JsonText& document, std::optional<std::string_view> bin) {
         // Views into `decoded` stay where they are: it is filled before they are taken.
         std::vector<std::pair<std::size_t, std::size_t>> own;
-        each(document, "buffers", "", [&](const Json& buffer, const std::string& pointer) {
-            const std::size_t length = needed(buffer, "byteLength", pointer);
-            std::string_view& bytes = model_.buffers.emplace_back();
-            const Json* uri = member(buffer, "uri");
-            if (uri == nullptr || !uri->is_string()) {
-                // Others without bytes are there for clients that cannot decompress.
-                if (model_.buffers.size() > 1 || !bin) return;
-                bytes = bin->substr(0, length);
-                return hold(length, bytes.size(), pointer);
-            }
-            const auto& name = uri->get_ref<const std::string&>();
-            const std::size_t comma = name.find(',');
-            const bool is_data = name.starts_with("data:") && comma != name.npos &&
-                                 std::string_view(name).substr(0, comma).ends_with(";base64");
-            if (!is_data) {
-                fault(FaultKind::Unsupported, "GLTF_URI",
-                      "The file's bytes are elsewhere, at " + json::quoted(name) +
-                          ": nothing is fetched. Pack it into one file (GLB) first.",
-                      pointer + "/uri");
-                return;
-            }
-            auto decoded = decode_base64(std::string_view(name).substr(comma + 1));
-            if (!decoded) return invalid("This is no base64.", pointer + "/uri");
-            hold(length, decoded->size(), pointer);
-            own.emplace_back(model_.buffers.size() - 1, model_.decoded.size());
-            model_.decoded.push_back(std::move(*decoded));
-        });
+        const auto begin = [](std::size_t) {};
+        each(document, "buffers", "", begin,
+             [&](const JsonText& buffer, const std::string& pointer) {
+                 const std::size_t length = needed(buffer, "byteLength", pointer);
+                 std::string_view& bytes = model_.buffers.emplace_back();
+                 const auto uri = buffer.member("uri");
+                 if (!uri || !uri->is_text()) {
+                     // Others without bytes are there for clients that cannot decompress.
+                     if (model_.buffers.size() > 1 || !bin) return;
+                     bytes = bin->substr(0, length);
+                     return hold(length, bytes.size(), pointer);
+                 }
+                 // A slash may be written with a backslash; then it is short of what
+                 // look_through_json calls long, or refused there.
+                 const std::string escaped = whole_text_of_escaped(*uri);
+                 const std::string_view name =
+                     escaped.empty() ? uri->text().substr(1, uri->text().size() - 2) : escaped;
+                 const std::size_t comma = name.find(',');
+                 const bool is_data = name.starts_with("data:") && comma != name.npos &&
+                                      name.substr(0, comma).ends_with(";base64");
+                 if (!is_data) {
+                     fault(FaultKind::Unsupported, "GLTF_URI",
+                           "The file's bytes are elsewhere, at " + json::quoted(name) +
+                               ": nothing is fetched. Pack it into one file (GLB) first.",
+                           pointer + "/uri");
+                     return;
+                 }
+                 auto decoded = decode_base64(name.substr(comma + 1));
+                 if (!decoded) return invalid("This is no base64.", pointer + "/uri");
+                 hold(length, decoded->size(), pointer);
+                 own.emplace_back(model_.buffers.size() - 1, model_.decoded.size());
+                 model_.decoded.push_back(std::move(*decoded));
+             });
         for (const auto& [buffer, which] : own)
             model_.buffers[buffer] = model_.decoded[which];
     }
 
-    void read_views(const Json& document) {
-        each(document, "bufferViews", "", [&](const Json& view, const std::string& pointer) {
-            GltfView out;
-            out.buffer = needed(view, "buffer", pointer);
-            out.offset = number(view, "byteOffset", pointer, 0);
-            out.length = needed(view, "byteLength", pointer);
-            out.stride = number(view, "byteStride", pointer, 0);
-            if (const Json* packed = extension(view, "EXT_meshopt_compression")) {
-                const std::string place = pointer + "/extensions/EXT_meshopt_compression";
-                GltfMeshopt& meshopt = out.meshopt.emplace();
-                meshopt.buffer = needed(*packed, "buffer", place);
-                meshopt.offset = number(*packed, "byteOffset", place, 0);
-                meshopt.length = needed(*packed, "byteLength", place);
-                meshopt.stride = needed(*packed, "byteStride", place);
-                meshopt.count = needed(*packed, "count", place);
-                meshopt.mode = text(*packed, "mode");
-                meshopt.filter = text(*packed, "filter");
-            }
-            model_.views.push_back(std::move(out));
-        });
+    void read_views(const JsonText& document) {
+        const auto begin = [&](std::size_t all) { model_.views.reserve(all); };
+        each(document, "bufferViews", "", begin,
+             [&](const JsonText& view, const std::string& pointer) {
+                 GltfView out;
+                 out.buffer = needed(view, "buffer", pointer);
+                 out.offset = number(view, "byteOffset", pointer, 0);
+                 out.length = needed(view, "byteLength", pointer);
+                 out.stride = number(view, "byteStride", pointer, 0);
+                 if (const auto packed = extension(view, "EXT_meshopt_compression")) {
+                     const std::string place = pointer + "/extensions/EXT_meshopt_compression";
+                     GltfMeshopt& meshopt = out.meshopt.emplace();
+                     meshopt.buffer = needed(*packed, "buffer", place);
+                     meshopt.offset = number(*packed, "byteOffset", place, 0);
+                     meshopt.length = needed(*packed, "byteLength", place);
+                     meshopt.stride = needed(*packed, "byteStride", place);
+                     meshopt.count = needed(*packed, "count", place);
+                     meshopt.mode = text(*packed, "mode");
+                     meshopt.filter = text(*packed, "filter");
+                 }
+                 model_.views.push_back(std::move(out));
+             });
     }
 
-    void read_accessors(const Json& document) {
-        each(document, "accessors", "", [&](const Json& accessor, const std::string& pointer) {
-            GltfAccessor out;
-            out.view = index(accessor, "bufferView", pointer);
-            out.offset = number(accessor, "byteOffset", pointer, 0);
-            out.count = needed(accessor, "count", pointer);
-            out.component = needed(accessor, "componentType", pointer);
-            out.type = text(accessor, "type");
-            out.normalized = flag(accessor, "normalized");
-            out.sparse = member(accessor, "sparse") != nullptr;
-            model_.accessors.push_back(std::move(out));
-        });
+    void read_accessors(const JsonText& document) {
+        const auto begin = [&](std::size_t all) { model_.accessors.reserve(all); };
+        each(document, "accessors", "", begin,
+             [&](const JsonText& accessor, const std::string& pointer) {
+                 GltfAccessor out;
+                 out.view = index(accessor, "bufferView", pointer);
+                 out.offset = number(accessor, "byteOffset", pointer, 0);
+                 out.count = needed(accessor, "count", pointer);
+                 out.component = needed(accessor, "componentType", pointer);
+                 out.type = text(accessor, "type");
+                 out.normalized = flag(accessor, "normalized");
+                 out.sparse = accessor.member("sparse").has_value();
+                 model_.accessors.push_back(std::move(out));
+             });
     }
 
-    void read_meshes(const Json& document) {
-        each(document, "meshes", "", [&](const Json& mesh, const std::string& pointer) {
+    void read_meshes(const JsonText& document) {
+        const auto begin = [&](std::size_t all) { model_.meshes.reserve(all); };
+        each(document, "meshes", "", begin, [&](const JsonText& mesh, const std::string& pointer) {
             auto& primitives = model_.meshes.emplace_back();
-            each(mesh, "primitives", pointer, [&](const Json& from, const std::string& place) {
-                GltfPrimitive out;
-                out.pointer = place;
-                out.mode = number(from, "mode", place, 4);
-                out.indices = index(from, "indices", place);
-                if (const Json* attributes = member(from, "attributes"))
-                    out.position = index(*attributes, "POSITION", place + "/attributes");
-                if (const Json* draco = extension(from, "KHR_draco_mesh_compression")) {
-                    const std::string there = place + "/extensions/KHR_draco_mesh_compression";
-                    const Json* ids = member(*draco, "attributes");
-                    out.draco = GltfDraco{
-                        needed(*draco, "bufferView", there),
-                        ids == nullptr ? 0 : needed(*ids, "POSITION", there + "/attributes")};
-                }
-                primitives.push_back(std::move(out));
-            });
+            const auto begin_mesh = [&](std::size_t all) { primitives.reserve(all); };
+            each(mesh, "primitives", pointer, begin_mesh,
+                 [&](const JsonText& from, const std::string& place) {
+                     GltfPrimitive out;
+                     out.mesh = static_cast<std::uint32_t>(model_.meshes.size() - 1);
+                     out.number = static_cast<std::uint32_t>(primitives.size());
+                     out.mode = number(from, "mode", place, 4);
+                     out.indices = index(from, "indices", place);
+                     if (const auto attributes = from.member("attributes"))
+                         out.position = index(*attributes, "POSITION", place + "/attributes");
+                     if (const auto draco = extension(from, "KHR_draco_mesh_compression")) {
+                         const std::string there = place + "/extensions/KHR_draco_mesh_compression";
+                         const auto ids = draco->member("attributes");
+                         out.draco =
+                             GltfDraco{needed(*draco, "bufferView", there),
+                                       ids ? needed(*ids, "POSITION", there + "/attributes") : 0};
+                     }
+                     primitives.push_back(std::move(out));
+                 });
         });
     }
 
@@ -315,55 +225,67 @@ class ModelReader {
                 1};
     }
 
-    void read_nodes(const Json& document) {
-        each(document, "nodes", "", [&](const Json& node, const std::string& pointer) {
+    void read_nodes(const JsonText& document) {
+        const auto begin = [&](std::size_t all) { model_.nodes.reserve(all); };
+        each(document, "nodes", "", begin, [&](const JsonText& node, const std::string& pointer) {
             GltfNode out;
             out.mesh = index(node, "mesh", pointer);
-            out.is_skinned = member(node, "skin") != nullptr;
+            out.is_skinned = node.member("skin").has_value();
             out.children = indices(node, "children", pointer);
-            if (extension(node, "EXT_mesh_gpu_instancing") != nullptr)
+            if (extension(node, "EXT_mesh_gpu_instancing"))
                 fault(FaultKind::Unsupported, "GLTF_EXTENSION",
                       "Instances by EXT_mesh_gpu_instancing are not read.", pointer);
-            if (!read_numbers(node, "matrix", pointer, out.matrix)) {
-                std::array<double, 3> translation{0, 0, 0}, scale{1, 1, 1};
-                std::array<double, 4> rotation{0, 0, 0, 1};
-                read_numbers(node, "translation", pointer, translation);
-                read_numbers(node, "rotation", pointer, rotation);
-                read_numbers(node, "scale", pointer, scale);
-                out.matrix = matrix_of(translation, rotation, scale);
+            GltfMatrix matrix{};
+            std::array<double, 3> translation{0, 0, 0}, scale{1, 1, 1};
+            std::array<double, 4> rotation{0, 0, 0, 1};
+            bool is_placed = read_numbers(node, "matrix", pointer, matrix);
+            if (!is_placed) {
+                is_placed |= read_numbers(node, "translation", pointer, translation);
+                is_placed |= read_numbers(node, "rotation", pointer, rotation);
+                is_placed |= read_numbers(node, "scale", pointer, scale);
+                matrix = matrix_of(translation, rotation, scale);
+            }
+            if (is_placed) {
+                out.matrix = static_cast<std::uint32_t>(model_.matrices.size());
+                model_.matrices.push_back(matrix);
             }
             model_.nodes.push_back(std::move(out));
         });
     }
 
-    std::vector<std::size_t> indices(const Json& object, const char* name,
+    std::vector<std::size_t> indices(const JsonText& object, const char* name,
                                      const std::string& pointer) {
         std::vector<std::size_t> out;
-        const Json* list = member(object, name);
-        if (list == nullptr || !list->is_array()) return out;
-        for (std::size_t i = 0; i < list->size(); ++i) {
-            if (const auto n = whole((*list)[i], pointer + "/" + name + "/" + std::to_string(i)))
-                out.push_back(*n);
+        const auto list = object.member(name);
+        const std::string here = pointer + "/" + name;
+        if (!list || !list->is_array()) return out;
+        const std::size_t elements = list->element_count();
+        if (!count(indices_, elements, "children of nodes in all", here)) return out;
+        out.reserve(elements);
+        std::size_t i = 0;
+        for (JsonText::Elements all(*list); const auto element = all.next(); ++i) {
+            if (const auto n = whole(*element, here + "/" + std::to_string(i))) out.push_back(*n);
         }
         return out;
     }
 
     /// The scene that the file wants shown, or its first; without any, all nodes on top.
-    void read_scene(const Json& document) {
+    void read_scene(const JsonText& document) {
         const std::size_t which = number(document, "scene", "", 0);
         std::size_t at = 0;
         bool found = false;
-        each(document, "scenes", "", [&](const Json& scene, const std::string& pointer) {
+        const auto begin = [](std::size_t) {};
+        each(document, "scenes", "", begin, [&](const JsonText& scene, const std::string& pointer) {
             if (at++ != which) return;
             found = true;
             model_.roots = indices(scene, "nodes", pointer);
             if (!model_.is_ours) return;
-            if (const Json* extras = member(scene, "extras")) {
+            if (const auto extras = scene.member("extras")) {
                 model_.is_z_up = text(*extras, "up") == "z";
                 model_.crs = text(*extras, "crs");
-                const Json* unit = member(*extras, "unit_to_metre");
-                if (unit != nullptr && unit->is_number())
-                    model_.unit_to_metre = unit->get<double>();
+                const auto unit = extras->member("unit_to_metre");
+                if (const auto metres = unit ? number_of(*unit) : std::nullopt)
+                    model_.unit_to_metre = *metres;
             }
         });
         if (found) return;
@@ -376,8 +298,8 @@ class ModelReader {
             if (!is_child[i]) model_.roots.push_back(i);
     }
 
-    FaultLog& log_;
     GltfModel model_;
+    std::size_t indices_ = 0;  ///< of nodes under nodes and scenes, so far
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,7 +56,13 @@ struct GltfPrimitive {
     std::optional<std::size_t> position;
     std::optional<std::size_t> indices;
     std::optional<GltfDraco> draco;
-    std::string pointer;  ///< into the file's JSON
+    std::uint32_t mesh = 0;  ///< where it is in the file
+    std::uint32_t number = 0;
+
+    /// Into the file's JSON.
+    std::string pointer() const {
+        return "/meshes/" + std::to_string(mesh) + "/primitives/" + std::to_string(number);
+    }
 };
 
 /// Column by column, as glTF has it.
@@ -64,7 +71,7 @@ using GltfMatrix = std::array<double, 16>;
 struct GltfNode {
     std::optional<std::size_t> mesh;
     std::vector<std::size_t> children;
-    GltfMatrix matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    std::optional<std::uint32_t> matrix;  ///< into GltfModel::matrices; nothing: it stays in place
     bool is_skinned = false;
 };
 
@@ -76,6 +83,7 @@ struct GltfModel {
     std::vector<GltfAccessor> accessors;
     std::vector<std::vector<GltfPrimitive>> meshes;
     std::vector<GltfNode> nodes;
+    std::deque<GltfMatrix> matrices;
     std::vector<std::size_t> roots;  ///< of the scene that is shown
     bool is_ours = false;            ///< lines are constraints, and extras may be believed
     bool is_z_up = false;
@@ -85,7 +93,8 @@ struct GltfModel {
 
 /// Takes a glTF apart, binary or JSON with data: URIs. Knows nothing of other files: a URI that
 /// names one is refused by name. Faults are added to the log, with pointers into the file's JSON.
-/// Views into `bytes` are kept. Memory: the document is bounded in its values and its depth.
+/// Views into `bytes` are kept. Nothing of the document is built: memory is what the model takes,
+/// of kMostGltfParts at most.
 std::optional<GltfModel> read_gltf_model(std::string_view bytes, FaultLog& log);
 
 }  // namespace tinsmith::api

@@ -2,24 +2,28 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace tinsmith::api {
 
-struct JsonLimits {
-    std::size_t values = 0;  ///< of any kind, names among them
-    int depth = 0;
-};
-
 struct JsonSound {
-    bool is_sound = true;
-    bool is_too_much = false;    ///< the limits were met; otherwise its syntax is wrong
+    /// What is wrong with it first.
+    enum class Fault {
+        None,
+        Syntax,
+        TooDeep,
+        TooManyMembers,  ///< of one object
+        RepeatedName,    ///< in one object
+        TooLong,         ///< a number, or a text that is not all plain ASCII
+    };
+    Fault fault = Fault::None;
     std::size_t wrong_byte = 0;  ///< counted from 1
+    std::string name = {};       ///< that is repeated; cut where it is long
 };
 
-/// Whether a document can be read and is within limits, before the library builds it in memory.
-/// The library's own way to watch it being built goes through all of a list again after each object
-/// in it. Cost: linear.
-JsonSound look_through_json(std::string_view text, JsonLimits limits);
+/// Looks through a document before any of it is built. Long texts in plain ASCII are allowed, and
+/// cost no memory. Cost: linear; memory as `NameSet` says, for each depth.
+JsonSound look_through_json(std::string_view text, std::size_t most_depth);
 
 }  // namespace tinsmith::api

@@ -14,13 +14,17 @@ bool is_of_number(char c) {
     return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.' || c == 'e' || c == 'E';
 }
 
-/// Behind the last byte between the quotes; at most one byte farther than may be.
-std::size_t end_of_text(std::string_view body, std::size_t begin) {
-    const std::size_t most = std::min(body.size(), begin + kLongestText + 1);
+/// Behind the last byte between the quotes, or `most` or one more where that is nearer.
+std::size_t end_of_text(std::string_view body, std::size_t begin, std::size_t most) {
     std::size_t at = begin;
     while (at < most && body[at] != '"')
         at += body[at] == '\\' ? std::size_t{2} : std::size_t{1};
     return at;
+}
+
+bool is_plain(std::string_view text) {
+    return std::all_of(text.begin(), text.end(),
+                       [](char c) { return c >= ' ' && c <= '~' && c != '\\'; });
 }
 
 std::size_t end_of_number(std::string_view body, std::size_t begin) {
@@ -30,14 +34,21 @@ std::size_t end_of_number(std::string_view body, std::size_t begin) {
     return at;
 }
 
-}  // namespace
-
-std::optional<LongToken> first_long_token(std::string_view body) {
+/// The first that is too long. Plain texts are not, where they are wanted.
+std::optional<LongToken> find_long(std::string_view body, std::vector<PlainText>* plain_texts) {
     for (std::size_t at = 0; at < body.size(); ++at) {
         const char c = body[at];
         if (c == '"') {
-            const std::size_t end = end_of_text(body, at + 1);
-            if (end - (at + 1) > kLongestText) return LongToken{at, true};
+            const std::size_t begin = at + 1;
+            std::size_t end =
+                end_of_text(body, begin, std::min(body.size(), begin + kLongestText + 1));
+            if (end - begin > kLongestText) {
+                if (plain_texts == nullptr) return LongToken{at, true};
+                end = body.find('"', begin);
+                if (end == body.npos || !is_plain(body.substr(begin, end - begin)))
+                    return LongToken{at, true};
+                plain_texts->push_back({begin, end});
+            }
             at = end;
         } else if ((c >= '0' && c <= '9') || c == '-') {
             const std::size_t end = end_of_number(body, at);
@@ -46,6 +57,18 @@ std::optional<LongToken> first_long_token(std::string_view body) {
         }
     }
     return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LongToken> first_long_token(std::string_view body) {
+    return find_long(body, nullptr);
+}
+
+LongTokens long_tokens(std::string_view body) {
+    LongTokens all;
+    all.other = find_long(body, &all.plain_texts);
+    return all;
 }
 
 bool is_written_nonzero(std::string_view number) {

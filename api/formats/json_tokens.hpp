@@ -28,6 +28,19 @@ struct LongToken {
 /// memory.
 std::optional<LongToken> first_long_token(std::string_view body);
 
+/// Long texts that hold neither escapes nor anything but ASCII, such as data: URIs, say what is
+/// written: whoever wants them takes them from the body. `begin` and `end` are between the quotes.
+struct PlainText {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+struct LongTokens {
+    std::vector<PlainText> plain_texts;
+    std::optional<LongToken> other;  ///< the first that is not of these; nothing behind it counts
+};
+/// Cost: linear.
+LongTokens long_tokens(std::string_view body);
+
 /// Whether what is written as a number is one other than zero, whatever double came of it.
 bool is_written_nonzero(std::string_view number);
 

@@ -63,6 +63,8 @@ std::string_view code_name(ErrorCode code) {
             return "STEP_BUDGET";
         case ErrorCode::IdBudget:
             return "ID_BUDGET";
+        case ErrorCode::MemoryBudget:
+            return "MEMORY_BUDGET";
     }
     return "UNKNOWN";
 }

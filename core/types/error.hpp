@@ -47,6 +47,7 @@ enum class ErrorCode {
     Cancelled = 503,       ///< the caller's cancel callback said stop
     StepBudget = 504,      ///< a loop used up its budget: a defect of ours, never the caller's
     IdBudget = 505,        ///< no number is left for another vertex, triangle or facet
+    MemoryBudget = 506,    ///< more memory than allowed, as the caller counts it
 };
 
 /// The word for a code on the wire, in logs and in tests: "RING_TOO_SHORT".

@@ -20,6 +20,7 @@
 #include "server/routes/route_table.hpp"
 #include "server/services.hpp"
 #include "server/session_keeper.hpp"
+#include "server/turnstile.hpp"
 #include "server/work.hpp"
 
 namespace tinsmith::server {
@@ -217,6 +218,7 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     if (const auto* why = std::get_if<std::string>(&vault)) return fail("--data: " + *why);
     if (const std::string why = keys.start(); !why.empty()) return fail(why);
     Gate gate(keys.ring());
+    Turnstile turnstile(config.http.limits.max_requests);
     Services services(config.http.limits, config.policy, std::get<0>(std::move(vault)));
     services.readiness.begin();
     SessionKeeper keeper(services);
@@ -236,8 +238,10 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     const Router page_router(make_page_routes(services), &services.metrics);
     HttpServer server(
         config.http,
-        {[&gate](Request& head, bool comes_again) {
-             return comes_again ? gate.would_refuse(head) : gate.admit(head);
+        {[&gate, &turnstile](Request& head, bool comes_again) {
+             auto refusal = comes_again ? gate.would_refuse(head) : gate.admit(head);
+             if (refusal) return refusal;
+             return comes_again ? turnstile.would_refuse(head) : turnstile.admit(head);
          },
          [&](const Request& request) {
              const Metrics::InFlight one(services.metrics);

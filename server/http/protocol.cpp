@@ -266,10 +266,9 @@ class Protocol::Impl {
 
     /// The library hears of no body: it would copy it, compress it and cut ranges out of it.
     static void tell_of_body(httplib::Response& out) {
-        const std::string& body = exchange_here().answer.sent();
         out.headers.erase("Content-Length");
-        if (out.status != kNotModified)
-            out.set_header("Content-Length", std::to_string(body.size()));
+        if (out.status == kNotModified) return;
+        out.set_header("Content-Length", std::to_string(exchange_here().answer.sent().size()));
     }
 
     /// What is wrong with the head or with who sends it, as an answer; nothing: go on.

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "server/limits.hpp"
 
 namespace tinsmith::server {
 
@@ -14,9 +17,20 @@ struct KeyQuotas {
     std::optional<std::size_t> max_memory_bytes{};  ///< of its sessions, in memory or not
     std::optional<std::size_t> max_requests{};      ///< at the same time
     std::optional<double> max_requests_per_second{};
+    std::optional<std::size_t> max_body_bytes{};
+    std::optional<std::size_t> max_session_bytes{};  ///< of each of its sessions
+    std::optional<std::size_t> max_vertices{};
+    std::optional<std::size_t> max_triangles{};
+    std::optional<std::size_t> max_polygon_vertices{};
+    std::optional<std::uint64_t> max_crossings{};
+    std::optional<double> max_edit_seconds{};
 
     friend bool operator==(const KeyQuotas&, const KeyQuotas&) = default;
 };
+
+/// The limits of all, as far as a key's quotas allow. What the key has of its own, sessions and
+/// memory and requests, is for others to count.
+Limits within_quotas(Limits limits, const KeyQuotas& quotas);
 
 /// Who asks: a key, or nobody in particular where the server asks for none.
 ///

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -68,6 +70,19 @@ Response refuse_for_now(const Request& request, std::string_view quota, double v
         .with("Retry-After", quota_text(std::ceil(seconds)));
 }
 
+/// A body that is longer than the key may send. What is no length is for others to refuse.
+std::optional<Response> refuse_length(const Request& request, const KeyQuotas& quotas) {
+    const auto text = request.header("content-length");
+    if (!quotas.max_body_bytes || !text) return std::nullopt;
+    std::uint64_t length = 0;
+    const auto [stop, error] = std::from_chars(text->data(), text->data() + text->size(), length);
+    if (error != std::errc() || length <= *quotas.max_body_bytes) return std::nullopt;
+    return refuse(request, ProblemType::BodyTooLarge,
+                  "The body has " + std::to_string(length) +
+                      " bytes, the quota max_body_bytes of this key is " +
+                      std::to_string(*quotas.max_body_bytes) + ". Send less.");
+}
+
 }  // namespace
 
 /// One request of a key that is being answered.
@@ -92,9 +107,9 @@ class Gate::Pass {
 Gate::Gate(const KeyRing& keys, Clock clock) : keys_(keys), clock_(std::move(clock)) {}
 
 std::optional<Response> Gate::would_refuse(const Request& request) const {
-    if (!is_behind_keys(request) || !keys_.wants_keys() || keys_.find(shown_key(request)))
-        return std::nullopt;
-    return refuse_stranger(request);
+    if (!is_behind_keys(request) || !keys_.wants_keys()) return std::nullopt;
+    const auto asker = keys_.find(shown_key(request));
+    return asker ? refuse_length(request, asker->quotas) : refuse_stranger(request);
 }
 
 std::optional<Response> Gate::admit(Request& request) {
@@ -103,6 +118,7 @@ std::optional<Response> Gate::admit(Request& request) {
     if (!asker) return refuse_stranger(request);
     request.asker = *std::move(asker);
     const KeyQuotas& quotas = request.asker.quotas;
+    if (auto refusal = refuse_length(request, quotas)) return refusal;
     if (!quotas.max_requests && !quotas.max_requests_per_second) return std::nullopt;
     const std::lock_guard lock(mutex_);
     Use& use = uses_[request.asker.id];

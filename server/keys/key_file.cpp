@@ -27,8 +27,7 @@ constexpr double kLargestQuota = 9e15;
 
 constexpr std::string_view kHeader =
     "# The API keys of a Tinsmith server, by their SHA-256: the keys themselves are not in here.\n"
-    "# name id sha256 made [max_sessions=N max_memory_bytes=N max_requests=N "
-    "max_requests_per_second=N]\n"
+    "# name id sha256 made [QUOTA=N ...], such as max_sessions=10\n"
     "# `tinsmith key` writes this file. A running server reads it again on SIGHUP.\n";
 
 struct Quota {
@@ -59,6 +58,13 @@ constexpr std::array kQuotas{
     quota<&KeyQuotas::max_memory_bytes>("max_memory_bytes", true),
     quota<&KeyQuotas::max_requests>("max_requests", true),
     quota<&KeyQuotas::max_requests_per_second>("max_requests_per_second", false),
+    quota<&KeyQuotas::max_body_bytes>("max_body_bytes", true),
+    quota<&KeyQuotas::max_session_bytes>("max_session_bytes", true),
+    quota<&KeyQuotas::max_vertices>("max_vertices", true),
+    quota<&KeyQuotas::max_triangles>("max_triangles", true),
+    quota<&KeyQuotas::max_polygon_vertices>("max_polygon_vertices", true),
+    quota<&KeyQuotas::max_crossings>("max_crossings", true),
+    quota<&KeyQuotas::max_edit_seconds>("max_edit_seconds", false),
 };
 
 std::string in_quotes(std::string_view text) {

@@ -74,8 +74,8 @@ Response list_constraints(Services& services, const Request& request,
     const auto& [limit, after] = std::get<0>(page);
     const auto place = after.empty() ? Place{version, 0} : place_in(after).value_or(Place{});
     if (place.version != version) return refuse_cursor(request, version);
-    const RegionLimits limits{services.limits.max_crossings,
-                              deadline(services.limits, services.stopping)};
+    const Limits all = services.limits_of(request.asker);
+    const RegionLimits limits{all.max_crossings, deadline(all, services.stopping)};
     const auto lines =
         find_constraint_lines(ground, limits_for_all(limits, ground.tin.triangle_count()));
     if (!lines) return refuse_question(request, lines.errors());

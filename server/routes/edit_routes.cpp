@@ -95,7 +95,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
     if (const auto* refusal = std::get_if<Response>(&wished)) return *refusal;
     const Wishes& wishes = std::get<0>(wished);
     begin_stage(0.1);
-    auto asked = api::read_edit_request(request.body, services.read_limits());
+    auto asked = api::read_edit_request(request.body, services.read_limits(request.asker));
     if (!asked) {
         return refuse(request, api::problem_of_faults(asked.kind(), std::move(asked.faults())));
     }
@@ -106,7 +106,7 @@ Response edit_polygon(Services& services, const Request& request, const PathArgu
         (wishes.dry_run ? mesh_bytes : 0) + (as_mesh ? bytes_to_encode(mesh_bytes) : 0));
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
 
-    auto made = make_edit(session, *asked, services.limits, services.stopping);
+    auto made = make_edit(session, *asked, services.limits_of(request.asker), services.stopping);
     if (const auto* no = std::get_if<NoEdit>(&made))
         return refuse_edit(request, asked->polygon, *no);
     auto& edit = std::get<PendingEdit>(made);

@@ -43,7 +43,7 @@ Step<Asked> require_change(Services& services, const Request& request, const std
     asked.change.expected_version = std::get<0>(expected);
     asked.change.want_delta = std::get<0>(type) == 1;
     begin_stage(1.0);
-    asked.change.limits = rerun_limits(services.limits, services.stopping);
+    asked.change.limits = rerun_limits(services.limits_of(request.asker), services.stopping);
     return asked;
 }
 

@@ -90,7 +90,7 @@ std::optional<TerrainFormat> format_of(const api::FormPart& part) {
     return is_unsaid ? terrain_format_of(part.body) : terrain_format_named(part.media_type);
 }
 
-std::optional<LoadedTerrain> read_terrain(const Services& services, const api::FormPart& part,
+std::optional<LoadedTerrain> read_terrain(const api::ReadLimits& limits, const api::FormPart& part,
                                           const api::TerrainOptions& options, FormFaults& faults) {
     const auto format = format_of(part);
     if (!format) {
@@ -101,7 +101,7 @@ std::optional<LoadedTerrain> read_terrain(const Services& services, const api::F
                      {}}});
         return std::nullopt;
     }
-    auto terrain = load_terrain(part.body, *format, options, services.read_limits());
+    auto terrain = load_terrain(part.body, *format, options, limits);
     if (terrain) return std::move(*terrain);
     faults.add(terrain.kind(), kTerrain, std::move(terrain.faults()));
     return std::nullopt;
@@ -115,10 +115,10 @@ struct Options {
 
 /// The options of the polygons request, of the mesh and of the terrain in one object, by their
 /// names.
-Options read_options(const Services& services, const api::FormPart* part, FormFaults& faults) {
+Options read_options(const api::ReadLimits& limits, const api::FormPart* part, FormFaults& faults) {
     Options options;
     if (part == nullptr) return options;
-    auto read = api::read_options(part->body, services.read_limits());
+    auto read = api::read_options(part->body, limits);
     if (!read) {
         faults.add(read.kind(), kOptions, std::move(read.faults()));
         return options;
@@ -169,9 +169,9 @@ Response send(Services& services, const Request& request, const Session& session
     }
     MeshGround ground{*result.mesh, result.version, {}};
     if (options.regions) ground = ground_now(session, true);
-    auto found =
-        source_of(std::move(ground), options, session.facts().unit,
-                  {services.limits.max_crossings, deadline(services.limits, services.stopping)});
+    auto found = source_of(std::move(ground), options, session.facts().unit,
+                           {services.limits_of(request.asker).max_crossings,
+                            deadline(services.limits_of(request.asker), services.stopping)});
     if (auto* no = std::get_if<NoSource>(&found)) {
         if (const auto* errors = std::get_if<core::Errors>(no))
             return refuse_question(request, *errors);
@@ -209,7 +209,7 @@ Response integrate(Services& services, const Request& request, LoadedTerrain ter
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     work.edit.want_mesh = type != 0;
     begin_stage(0.8);
-    set_budgets(work.edit, services.limits, services.stopping);
+    set_budgets(work.edit, services.limits_of(request.asker), services.stopping);
     const bool dry_run = work.edit.dry_run;
     Session session({{},
                      {},
@@ -250,15 +250,15 @@ Response integrate_once(Services& services, const Request& request, const PathAr
     }
     FormFaults faults;
     const Form form = form_of(*parts, faults);
-    const Options options = read_options(services, form.options, faults);
+    const api::ReadLimits limits = services.read_limits(request.asker);
+    const Options options = read_options(limits, form.options, faults);
     std::optional<LoadedTerrain> terrain;
     if (form.terrain != nullptr)
-        terrain = read_terrain(services, *form.terrain, options.terrain, faults);
+        terrain = read_terrain(limits, *form.terrain, options.terrain, faults);
     std::optional<PolygonWork> work;
     if (form.polygons != nullptr) {
         begin_stage(0.1);
-        auto read =
-            read_polygon_work(form.polygons->body, options.polygons, services.read_limits());
+        auto read = read_polygon_work(form.polygons->body, options.polygons, limits);
         if (read) work = std::move(*read);
         if (!read) faults.add(read.kind(), kPolygons, std::move(read.faults()));
     }

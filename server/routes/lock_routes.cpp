@@ -59,7 +59,7 @@ Response refuse_faults(const Request& request, api::FaultKind kind, api::Faults 
 }
 
 Step<Asked> require_lines(const Services& services, const Request& request, Asked asked) {
-    auto lines = api::read_lock_lines(request.body, services.read_limits());
+    auto lines = api::read_lock_lines(request.body, services.read_limits(request.asker));
     if (!lines) {
         return refuse(request, api::problem_of_faults(lines.kind(), std::move(lines.faults())));
     }
@@ -116,8 +116,8 @@ Response set_locks(Services& services, const Request& request, const std::string
     const bool as_delta = edit.want_delta;
     const auto memory = require_memory(services, request, dry_run ? session->mesh_bytes() : 0);
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
-    RunLimits limits = rerun_limits(services.limits, services.stopping);
-    limits.max_crossings = services.limits.max_crossings;
+    RunLimits limits = rerun_limits(services.limits_of(request.asker), services.stopping);
+    limits.max_crossings = services.limits_of(request.asker).max_crossings;
     const Stopwatch watch;
     const auto outcome = session->set_locks(std::move(edit), std::move(limits));
     if (const auto* mismatch = std::get_if<VersionMismatch>(&outcome)) {

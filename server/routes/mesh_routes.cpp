@@ -129,7 +129,7 @@ Step<BorrowedMemory> require_memory_to_encode(Services& services, const Session&
 Step<MeshGround> copy_ground(Services& services, const Session& session, const Request& request,
                              std::optional<std::uint64_t> version, bool regions) {
     if (!version) return ground_now(session, regions);
-    const auto limits = rerun_limits(services.limits, services.stopping);
+    const auto limits = rerun_limits(services.limits_of(request.asker), services.stopping);
     const auto outcome = session.state_at(*version, limits);
     if (const auto* state = std::get_if<SessionState>(&outcome))
         return ground_of(*state, *version, regions);
@@ -254,9 +254,10 @@ Response send_mesh(Services& services, const Request& request, const std::string
     options.gltf.crs = session.facts().crs;
     return send(services, session, request, suffix_of(format, options), options.regions,
                 [&](MeshGround ground) {
-                    auto source = source_of(std::move(ground), options, session.facts().unit,
-                                            {services.limits.max_crossings,
-                                             deadline(services.limits, services.stopping)});
+                    auto source =
+                        source_of(std::move(ground), options, session.facts().unit,
+                                  {services.limits_of(request.asker).max_crossings,
+                                   deadline(services.limits_of(request.asker), services.stopping)});
                     if (auto* no = std::get_if<NoSource>(&source))
                         return refuse_source(request, std::move(*no));
                     return write_as(services.metrics, request, session.facts(),

@@ -74,7 +74,7 @@ Response integrate_polygons(Services& services, const Request& request,
     begin_stage(0.1);
     auto work =
         read_polygon_work(request.body, options_of_query(request, api::polygon_option_names()),
-                          services.read_limits());
+                          services.read_limits(request.asker));
     if (!work) {
         return refuse(request, api::problem_of_faults(work.kind(), std::move(work.faults())));
     }
@@ -88,7 +88,7 @@ Response integrate_polygons(Services& services, const Request& request,
     work->edit.want_delta = as_delta;
     work->edit.expected_version = std::get<0>(expected);
     begin_stage(0.8);
-    set_budgets(work->edit, services.limits, services.stopping);
+    set_budgets(work->edit, services.limits_of(request.asker), services.stopping);
     const bool dry_run = work->edit.dry_run;
     if (dry_run && as_delta) {
         return refuse_delta_of_dry_run(request);

@@ -138,8 +138,8 @@ Response ask_elevations(Services& services, const Request& request,
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "points")) return *refusal;
-    api::ReadLimits limits = services.read_limits();
-    limits.max_polygon_vertices = std::min(limits.max_polygon_vertices, services.limits.max_points);
+    api::ReadLimits limits = services.read_limits(request.asker);
+    limits.max_polygon_vertices = services.limits.max_points;
     auto points = api::read_points(request.body, limits);
     if (!points) return refuse_faults(request, points.kind(), std::move(points.faults()));
     auto options = read_crs_option(request);
@@ -158,7 +158,7 @@ Response ask_profile(Services& services, const Request& request, const PathArgum
     if (const auto* refusal = std::get_if<Response>(&found)) return *refusal;
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "a line")) return *refusal;
-    auto line = api::read_line(request.body, services.read_limits());
+    auto line = api::read_line(request.body, services.read_limits(request.asker));
     if (!line) return refuse_faults(request, line.kind(), std::move(line.faults()));
     auto options = read_crs_option(request);
     if (!options) return refuse_faults(request, options.kind(), std::move(options.faults()));
@@ -170,12 +170,14 @@ Response ask_profile(Services& services, const Request& request, const PathArgum
         !misplaced.empty()) {
         return refuse_faults(request, api::FaultKind::Invalid, std::move(misplaced));
     }
-    const auto outcome =
-        profile_in(session, shapes[0].paths.front().points,
-                   {std::min(services.limits.max_crossings, services.limits.max_profile_crossings),
-                    deadline(services.limits, services.stopping)});
+    const Limits limits = services.limits_of(request.asker);
+    const bool is_own = limits.max_profile_crossings < limits.max_crossings;
+    const auto outcome = profile_in(session, shapes[0].paths.front().points,
+                                    {std::min(limits.max_crossings, limits.max_profile_crossings),
+                                     deadline(limits, services.stopping)});
     if (const auto* errors = std::get_if<core::Errors>(&outcome)) {
-        return refuse_question(request, *errors, line->shapes);
+        return refuse_question(request, *errors, line->shapes,
+                               is_own ? "max_profile_crossings" : "");
     }
     const auto& [profile, version] = std::get<ProfileAnswer>(outcome);
     return answer(session, version, api::write_profile(head_of(session, version), profile));
@@ -188,14 +190,15 @@ Response ask_volume(Services& services, const Request& request, const PathArgume
     if (auto refusal = refusal_of_type(request, "a question")) return *refusal;
     if (auto refusal = refusal_of_memory(services, request)) return *refusal;
     begin_stage(0.1);
-    auto asked = api::read_volume_request(request.body, services.read_limits());
+    auto asked = api::read_volume_request(request.body, services.read_limits(request.asker));
     if (!asked) return refuse_faults(request, asked.kind(), std::move(asked.faults()));
     const auto other = require_other(services, request, session, *asked);
     if (const auto* refusal = std::get_if<Response>(&other)) return *refusal;
     const Session* theirs = std::get<0>(other).get();
     const auto memory = require_memory(services, request, volume_bytes(session, *asked, theirs));
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
-    const auto outcome = volume_in(session, *asked, theirs, services.limits, services.stopping);
+    const auto outcome =
+        volume_in(session, *asked, theirs, services.limits_of(request.asker), services.stopping);
     if (const auto* gone = std::get_if<VersionGone>(&outcome)) {
         return version_gone(request, session, *gone);
     }

@@ -90,8 +90,9 @@ Step<BorrowedMemory> require_room(Services& services, const Request& request,
     return require_memory(services, request, session.mesh_bytes() + bytes);
 }
 
-RegionLimits limits_of(const Services& services) {
-    return {services.limits.max_crossings, deadline(services.limits, services.stopping)};
+RegionLimits limits_of(const Services& services, const Request& request) {
+    const Limits limits = services.limits_of(request.asker);
+    return {limits.max_crossings, deadline(limits, services.stopping)};
 }
 
 }  // namespace
@@ -108,7 +109,7 @@ Response list_regions(Services& services, const Request& request, const PathArgu
     const std::uint64_t now = session.view().version;
     if (auto answer = answer_to_conditions(request, session, now, suffix))
         return answer->with("Vary", "Accept");
-    const RegionLimits limits = limits_of(services);
+    const RegionLimits limits = limits_of(services, request);
     const auto memory = require_room(services, request, session);
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     const auto& [limit, after] = std::get<0>(page);
@@ -146,7 +147,7 @@ Response get_region(Services& services, const Request& request, const PathArgume
     if (const auto* refusal = std::get_if<Response>(&type)) return *refusal;
     const Session& session = *std::get<0>(found);
     const std::string_view suffix = kSuffixes[std::get<0>(type)];
-    const RegionLimits limits = limits_of(services);
+    const RegionLimits limits = limits_of(services, request);
     const auto memory = require_room(services, request, session);
     if (const auto* refusal = std::get_if<Response>(&memory)) return *refusal;
     RegionsCopy copy = region_of(session, arguments[1], std::get<0>(type) == 1);

@@ -248,7 +248,8 @@ Response refuse_outcome(const Request& request, const Session& session, const Ou
     }
     api::Problem problem = api::problem_of_errors(std::get<core::Errors>(outcome), {});
     problem.detail =
-        "To make that version again took longer than this server allows, or the server is "
+        "To make that version again took longer than max_edit_seconds of /v1/limits, or the server "
+        "is "
         "stopping.";
     return refuse(request, problem);
 }
@@ -278,11 +279,15 @@ std::optional<Response> refusal_of_version(const Request& request, const Session
 }
 
 Response refuse_question(const Request& request, const core::Errors& errors,
-                         const std::vector<api::RequestedShape>& shapes) {
-    api::Problem problem = api::problem_of_errors(errors, faults_of(errors, shapes));
+                         const std::vector<api::RequestedShape>& shapes, const std::string& limit) {
+    api::Faults faults = faults_of(errors, shapes);
+    for (api::Fault& fault : faults)
+        fault.limit = limit;
+    api::Problem problem = api::problem_of_errors(errors, std::move(faults));
     if (problem.type == api::ProblemType::Stopped) {
         problem.detail =
-            "The question took longer than this server allows, or the server is stopping. Ask "
+            "The question took longer than max_edit_seconds of /v1/limits, or the server is "
+            "stopping. Ask "
             "for smaller parts, or try again.";
     }
     return refuse(request, problem);

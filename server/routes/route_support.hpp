@@ -111,8 +111,10 @@ Response refuse_version(const Request& request, const Session& session,
                         const StateOutcome& outcome);
 
 /// What the core refused of a question; faults are told at places of the body, if there is one.
+/// `limit`: what a budget is called that is not the usual one.
 Response refuse_question(const Request& request, const core::Errors& errors,
-                         const std::vector<api::RequestedShape>& shapes = {});
+                         const std::vector<api::RequestedShape>& shapes = {},
+                         const std::string& limit = {});
 
 /// The shortest text that reads back to the same number.
 std::string text_of(double value);

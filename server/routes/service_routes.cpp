@@ -54,16 +54,19 @@ Handler once_started(Services& services, Handler handler) {
 
 Response get_limits(Services& services, const Request& request, const PathArguments&) {
     const Limits& limits = services.limits;
-    const std::array<std::pair<std::string_view, double>, 19> list{{
+    const std::array<std::pair<std::string_view, double>, 22> list{{
         {"max_body_bytes", static_cast<double>(limits.max_body_bytes)},
         {"max_sessions", static_cast<double>(limits.max_sessions)},
         {"max_memory_bytes", static_cast<double>(limits.max_memory_bytes)},
+        {"max_session_bytes", static_cast<double>(limits.max_session_bytes)},
         {"max_vertices", static_cast<double>(limits.max_vertices)},
         {"max_triangles", static_cast<double>(limits.max_triangles)},
+        {"max_polygon_vertices", static_cast<double>(limits.max_polygon_vertices)},
         {"max_history", static_cast<double>(limits.max_history)},
         {"max_history_bytes", static_cast<double>(limits.max_history_bytes)},
         {"max_crossings", static_cast<double>(limits.max_crossings)},
         {"max_edit_seconds", limits.max_edit_seconds},
+        {"max_requests", static_cast<double>(limits.max_requests)},
         {"max_points", static_cast<double>(limits.max_points)},
         {"max_profile_crossings", static_cast<double>(limits.max_profile_crossings)},
         {"job_threads", static_cast<double>(limits.job_threads)},

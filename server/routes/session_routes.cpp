@@ -46,6 +46,12 @@ Response refuse_session(const Request& request, const Limits& limits, StoreRefus
                           std::to_string(quotas.max_sessions.value_or(0)) +
                           ", is reached. DELETE sessions that are not needed.");
     }
+    if (why == StoreRefusal::TooLarge) {
+        return refuse(request, api::ProblemType::OutOfMemory,
+                      "The session would hold more than the limit max_session_bytes of " +
+                          std::to_string(limits.max_session_bytes) +
+                          ". Divide the terrain, or send fewer points.");
+    }
     if (why == StoreRefusal::NoMemory) {
         return refuse(request, api::ProblemType::OutOfMemory,
                       "All meshes together would pass the limit max_memory_bytes of " +
@@ -68,15 +74,15 @@ Response make_session(Services& services, const Request& request, std::optional<
     if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
     const auto options = api::parse_terrain_options(options_of_query(request));
     if (!options) return refuse(request, api::problem_of_faults(options.kind(), options.faults()));
-    auto terrain =
-        load_terrain(request.body, std::get<0>(format), *options, services.read_limits());
+    auto terrain = load_terrain(request.body, std::get<0>(format), *options,
+                                services.read_limits(request.asker));
     if (!terrain) {
         return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
     }
     const auto added = services.sessions.add(std::move(terrain->tin), terrain->about, request.asker,
                                              std::move(id));
     if (const auto* why = std::get_if<StoreRefusal>(&added)) {
-        return refuse_session(request, services.limits, *why);
+        return refuse_session(request, services.limits_of(request.asker), *why);
     }
     const Session& session = *std::get<0>(added);
     if (session.mesh_bytes() >= kLargeMesh) give_back_memory();
@@ -114,7 +120,7 @@ Response put_session(Services& services, const Request& request, const PathArgum
     }
     // Before the terrain is read, which takes long; the store has the last word all the same.
     if (services.sessions.contains(id)) {
-        return refuse_session(request, services.limits, StoreRefusal::IdIsTaken);
+        return refuse_session(request, services.limits_of(request.asker), StoreRefusal::IdIsTaken);
     }
     return make_session(services, request, id);
 }
@@ -139,7 +145,7 @@ Response fork_session(Services& services, const Request& request, const PathArgu
     }
     const auto forked = services.sessions.fork(*std::get<0>(found), request.asker);
     if (const auto* why = std::get_if<StoreRefusal>(&forked)) {
-        return refuse_session(request, services.limits, *why);
+        return refuse_session(request, services.limits_of(request.asker), *why);
     }
     return tell_created(services.sessions.view(*std::get<0>(forked)),
                         std::get<0>(forked)->facts().birth);

@@ -52,6 +52,10 @@ TEST_F(LyingFiles, OfGltf) {
     expect_refused(lying_gltf());
 }
 
+TEST_F(LyingFiles, OfGltfInVeryManyParts) {
+    expect_refused(crowded_gltf());
+}
+
 TEST_F(LyingFiles, OfAMeshInVeryManyPlaces) {
     expect_refused({mesh_in_many_places()});
 }

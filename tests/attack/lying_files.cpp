@@ -141,6 +141,11 @@ std::vector<LyingFile> lying_texts() {
         {"an entity of a file", xml,
          "<!DOCTYPE LandXML [<!ENTITY a SYSTEM \"file:///etc/passwd\">]><LandXML>&a;</LandXML>",
          422},
+        {"a zip in place of XML", xml, "PK\x03\x04" + std::string(1'000'000, '\0'), 422},
+        {"an encoding that nobody knows", xml,
+         "<?xml version=\"1.0\" encoding=\"x-" + std::string(1'000'000, 'y') +
+             "\"?><LandXML version=\"1.2\"/>",
+         422},
         {"elements 300,000 deep", xml, repeated("<a>", 300'000) + repeated("</a>", 300'000), 422},
         {"300,000 empty elements", xml, "<LandXML>" + repeated("<a/>", 300'000) + "</LandXML>",
          422},

@@ -15,6 +15,9 @@ struct LyingFile {
     int status = 0;  ///< that refuses it
 };
 
+/// Small ones of very many parts, or of parts that are very long.
+std::vector<LyingFile> crowded_gltf();
+
 /// Small files, each a lie of another kind.
 std::vector<LyingFile> lying_gltf();
 /// One triangle 64 million times, in under a megabyte.

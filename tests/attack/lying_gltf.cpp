@@ -116,6 +116,14 @@ std::string many_places(std::size_t count) {
            kViews + kHonestAccessors;
 }
 
+/// So many members of one object, after another.
+std::string repeated_names(std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i)
+        text += ",\"" + std::to_string(i) + "\":0";
+    return text;
+}
+
 std::string with_word(std::string bytes, std::size_t at, std::uint32_t word) {
     std::string number;
     append_number(number, word);
@@ -176,10 +184,11 @@ std::vector<LyingFile> lying_gltf() {
         {"extras nested 200,000 deep", kGlb,
          of_json(plain + kViews + "\"extras\":" + deep + "," + kHonestAccessors), 413},
         {"nested 200,000 deep", "model/gltf+json", deep, 413},
-        {"five million extras", kGlb,
+        {"five million extras, and a count of 2^64", kGlb,
          of_json(plain + kViews + "\"extras\":[" + repeated("0,", 5'000'000) + "0]," +
-                 kHonestAccessors),
-         413},
+                 accessors(R"("bufferView":0,"count":18446744073709551615)",
+                           R"("bufferView":1,"count":3)")),
+         422},
         {"nodes that double forty times", kGlb,
          of_json(kScene + doubling_nodes(40) + kPlainMesh + kViews + kHonestAccessors), 422},
         {"a chain of 20,000 nodes", kGlb,
@@ -188,6 +197,68 @@ std::vector<LyingFile> lying_gltf() {
          of_json(kScene + R"("nodes":[{"mesh":0,"children":[0]}],)" + kPlainMesh + kViews +
                  kHonestAccessors),
          422},
+    };
+}
+
+std::vector<LyingFile> crowded_gltf() {
+    const auto of_json = [](const std::string& json) { return glb(json, triangle()); };
+    const std::string rest = kPlainMesh + kViews + kHonestAccessors;
+    const std::string nodes = kScene + R"("nodes":[{"mesh":0})";
+    const std::string broken = R"(,{"mesh":-1}],)";
+    const std::string plain = kScene + kNode;
+    // Just as many as are taken, and one part that is wrong at the end.
+    constexpr std::size_t kMost = 99'990;
+    return {
+        {"a million empty nodes", kGlb, of_json(nodes + repeated(",{}", 1'000'000) + "]," + rest),
+         413},
+        {"99,990 empty nodes", kGlb, of_json(nodes + repeated(",{}", kMost) + broken + rest), 422},
+        {"99,990 scaled nodes", kGlb,
+         of_json(nodes + repeated(R"(,{"scale":[1,1,1]})", kMost) + broken + rest), 422},
+        {"a node with a million children", kGlb,
+         of_json(kScene + R"("nodes":[{"mesh":0,"children":[1)" + repeated(",1", 1'000'000) +
+                 "]}]," + rest),
+         413},
+        {"a scene of a million roots", kGlb,
+         of_json(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0)" + repeated(",0", 1'000'000) +
+                 "]}]," + kNode + rest),
+         413},
+        {"99,990 roots that are one node", kGlb,
+         of_json(R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0)" + repeated(",0", kMost) +
+                 "]}]," + kNode + rest),
+         422},
+        {"a million meshes", kGlb,
+         of_json(plain + R"("meshes":[{"primitives":[{}]})" + repeated(",{}", 1'000'000) + "]," +
+                 kViews + kHonestAccessors),
+         413},
+        {"99,990 primitives of nothing", kGlb,
+         of_json(plain + R"("meshes":[{"primitives":[{})" + repeated(",{}", kMost) + "]}]," +
+                 kViews + kHonestAccessors),
+         422},
+        {"a million accessors of nothing", kGlb,
+         of_json(plain + kPlainMesh + kViews + R"("accessors":[{})" + repeated(",{}", 1'000'000) +
+                 "]}"),
+         413},
+        {"99,990 accessors of one number", kGlb,
+         of_json(plain + kPlainMesh + kViews + R"("accessors":[{"count":1})" +
+                 repeated(R"(,{"count":1})", kMost) + "]}"),
+         422},
+        {"a million names in an object", kGlb,
+         of_json(plain + kPlainMesh + kViews + R"("extras":{"a":0)" + repeated_names(1'000'000) +
+                 "}," + kHonestAccessors),
+         413},
+        {"one name twice", kGlb, of_json(plain + R"("extras":{"a":[{"b":0,"b":1}]},)" + rest), 422},
+        {"a number of four million digits", kGlb,
+         of_json(plain + R"("extras":)" + std::string(4'000'000, '9') + "," + rest), 413},
+        {"a text of eight million bytes that is no base64", "model/gltf+json",
+         plain + kPlainMesh + R"("buffers":[{"byteLength":48,"uri":"data:;base64,)" +
+             std::string(8'000'000, '!') + R"("}],)" + kHonestAccessors,
+         422},
+        {"six million bytes as base64, of a file that promises more", "model/gltf+json",
+         plain + kPlainMesh + R"("buffers":[{"byteLength":6000001,"uri":"data:;base64,)" +
+             std::string(8'000'000, 'A') + R"("}],)" + kHonestAccessors,
+         422},
+        {"texts without an end", "model/gltf+json", plain + "\"" + std::string(8'000'000, 'a'),
+         413},
     };
 }
 

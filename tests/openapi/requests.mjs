@@ -195,6 +195,7 @@ export const ELSEWHERE = {
   'session-read-only': 'StoredSessions.OfAnotherAlgorithmAreReadOnly',
   'job-unfinished': 'JobRoutes.AnswerAtOnceAndLater',
   'too-many-jobs': 'FewJobs.SayWhenToComeAgain',
+  'busy': 'Turnstile.LetsSoManyInAtATime',
   'not-ready': 'ServiceRoutes.SayNotReadyWhileTheServerStarts',
   'stopped': 'SessionHistory.WorkThatIsStoppedChangesNothing',
   'internal': 'Router.TellsNothingOfAnException',

@@ -2,12 +2,19 @@
 #include "server/config.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
+
+#include "api/openapi.hpp"
+#include "server/router.hpp"
+#include "server/routes/route_table.hpp"
+#include "server/services.hpp"
 
 namespace tinsmith::server {
 namespace {
@@ -136,6 +143,38 @@ TEST(CommandLine, TakesTheEnvironmentToo) {
     ::unsetenv("TINSMITH_MAX_SESSIONS");
     EXPECT_EQ(config.http.port, 9001);
     EXPECT_EQ(config.http.limits.max_sessions, 4U);
+}
+
+TEST(CommandLine, HasAFlagForEveryLimit) {
+    const auto value_of = [](const ServeConfig& config, const std::string& name) {
+        Services services(config.http.limits);
+        const Router router(make_routes(services));
+        Request request;
+        request.method = "GET";
+        request.path = "/v1/limits";
+        return nlohmann::json::parse(router.handle(request).body)[name].get<double>();
+    };
+    const auto described = nlohmann::json::parse(
+        api::openapi_document())["components"]["schemas"]["Limits"]["required"];
+    ASSERT_GT(described.size(), 20U);
+    for (const auto& item : described) {
+        const auto name = item.get<std::string>();
+        SCOPED_TRACE(name);
+        std::string flag = "--" + name;
+        std::string variable = "TINSMITH_" + name;
+        for (char& c : flag)
+            c = c == '_' ? '-' : c;
+        for (char& c : variable)
+            c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        EXPECT_EQ(value_of(serve({flag.c_str(), "7"}), name), 7);
+        ::setenv(variable.c_str(), "8", 1);
+        const ServeConfig environment = serve({});
+        ::unsetenv(variable.c_str());
+        EXPECT_EQ(value_of(environment, name), 8);
+        EXPECT_EQ(exit_code({"serve", flag.c_str(), "-1"}), kExitUsage);
+        const TemporaryFile file("[serve]\n" + flag.substr(2) + " = 9\n");
+        EXPECT_EQ(value_of(serve({"--config", file.path()}), name), 9);
+    }
 }
 
 TEST(CommandLine, TakesAFileToo) {

@@ -11,6 +11,7 @@
 #include <meshoptimizer.h>
 
 #include "api/formats/gltf.hpp"
+#include "api/formats/gltf_document.hpp"
 #include "core/mesh/build.hpp"
 #include "tests/unit/api/formats/glb_bytes.hpp"
 
@@ -310,6 +311,15 @@ TEST(GlbReader, RefusesBrokenContainers) {
     std::string many = R"({"asset": {"version": "2.0"}, "nodes": [{})";
     for (int i = 0; i < 1'000'000; ++i)
         many += ",{}";
+    EXPECT_EQ(codes(many + "]}"), "GLTF_DOCUMENT/nodes");
+    many.resize(many.find("[{}") + 3 * (kMostGltfParts - 1));
+    EXPECT_EQ(codes(many + "{}]}"), "GLTF_INVALID/scenes");
+    EXPECT_EQ(codes(R"({"asset": {"version": "2.0", "extras": {"a": 1, "\u0061": 2}}})"),
+              "GLTF_INVALID");
+    // What has no triangles in it may be as long as it likes.
+    many = R"({"asset": {"version": "2.0"}, "extras": [0)";
+    for (int i = 0; i < 1'000'000; ++i)
+        many += ",0";
     EXPECT_EQ(codes(many + "]}"), "GLTF_INVALID/scenes");
     EXPECT_EQ(codes(R"({"nodes": [)" + std::string(5'000'000, '0').append("]}")), "GLTF_SYNTAX");
 }
