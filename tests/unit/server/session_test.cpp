@@ -78,10 +78,15 @@ TEST(Session, RefusesAnotherVersionThanExpected) {
 TEST(Session, DoesNotGrowBeyondItsLimit) {
     Session s({"s", "b", "Square", "EPSG:32616", "metre"}, square());
     PolygonEdit edit = edit_of(2, 4);
-    edit.max_triangles = 4;
+    edit.most.triangles = 4;
     const auto outcome = s.integrate(std::move(edit));
     ASSERT_TRUE(std::holds_alternative<core::Errors>(outcome));
     EXPECT_EQ(std::get<core::Errors>(outcome).front().code, core::ErrorCode::TriangleBudget);
+    edit = edit_of(2, 4);
+    edit.most = {1000, s.view().memory_bytes + 300};
+    const auto too_much = s.integrate(std::move(edit));
+    ASSERT_TRUE(std::holds_alternative<core::Errors>(too_much));
+    EXPECT_EQ(std::get<core::Errors>(too_much).front().code, core::ErrorCode::MemoryBudget);
     EXPECT_EQ(s.view().triangles, 2U);
 }
 

@@ -313,7 +313,7 @@ TEST(GlbReader, RefusesBrokenContainers) {
         many += ",{}";
     EXPECT_EQ(codes(many + "]}"), "GLTF_DOCUMENT/nodes");
     many.resize(many.find("[{}") + 3 * (kMostGltfParts - 1));
-    EXPECT_EQ(codes(many + "{}]}"), "GLTF_INVALID/scenes");
+    EXPECT_EQ(codes(many + ",{}]}"), "GLTF_INVALID/scenes");
     EXPECT_EQ(codes(R"({"asset": {"version": "2.0", "extras": {"a": 1, "\u0061": 2}}})"),
               "GLTF_INVALID");
     // What has no triangles in it may be as long as it likes.
@@ -321,7 +321,7 @@ TEST(GlbReader, RefusesBrokenContainers) {
     for (int i = 0; i < 1'000'000; ++i)
         many += ",0";
     EXPECT_EQ(codes(many + "]}"), "GLTF_INVALID/scenes");
-    EXPECT_EQ(codes(R"({"nodes": [)" + std::string(5'000'000, '0').append("]}")), "GLTF_SYNTAX");
+    EXPECT_EQ(codes(R"({"nodes": [)" + std::string(5'000'000, '0').append("]}")), "GLTF_DOCUMENT");
 }
 
 TEST(GlbReader, HoldsWhatDracoPromisesAgainstTheBytes) {

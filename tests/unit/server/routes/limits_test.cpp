@@ -126,7 +126,7 @@ void pass_max_crossings(Server& server) {
 }
 
 void pass_max_session_bytes(Server& server) {
-    expect_named(server.send("PUT", kSession, grid(20)), 507, "out-of-memory", "max_session_bytes");
+    expect_named(server.send("PUT", kSession, grid(30)), 507, "out-of-memory", "max_session_bytes");
     EXPECT_EQ(server.services.sessions.size(), 0U);
     server.make_session();
     const auto most = static_cast<std::size_t>(
@@ -155,10 +155,6 @@ void pass_max_edit_seconds(Server& server) {
     const Response answer = server.send("POST", kSession + "/polygons", circle(2000));
     EXPECT_EQ(answer.status, 503) << answer.body;
     EXPECT_NE(answer.body.find("max_edit_seconds"), std::string::npos) << answer.body;
-    const Response volume =
-        server.send("POST", kSession + "/volume", R"({"against": {"elevation": 1}})");
-    EXPECT_EQ(volume.status, 503);
-    EXPECT_NE(volume.body.find("max_edit_seconds"), std::string::npos) << volume.body;
     EXPECT_EQ(json::parse(server.send("GET", kSession).body)["version"], 1);
 }
 
@@ -179,8 +175,8 @@ std::vector<Row> rows() {
          pass_max_polygon_vertices},
         {"max_crossings", {.max_crossings = 5}, {.max_crossings = 5}, pass_max_crossings},
         {"max_session_bytes",
-         {.max_session_bytes = 20'000},
-         {.max_session_bytes = 20'000},
+         {.max_session_bytes = 40'000},
+         {.max_session_bytes = 40'000},
          pass_max_session_bytes},
         {"max_edit_seconds",
          {.max_edit_seconds = 1e-9},
@@ -226,7 +222,7 @@ TEST(LimitRoutes, NameThoseOfQuestions) {
 }
 
 TEST(LimitRoutes, NameThoseOfForks) {
-    Server server({.max_sessions = 2, .max_session_bytes = 20'000});
+    Server server({.max_sessions = 2, .max_session_bytes = 40'000});
     server.make_session();
     EXPECT_EQ(server.send("POST", kSession + "/fork").status, 201);
     expect_named(server.send("POST", kSession + "/fork"), 429, "too-many-sessions", "max_sessions");
