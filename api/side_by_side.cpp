@@ -5,14 +5,13 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace tinsmith::api {
 namespace {
 
-/// Helpers that may still be taken.
+/// Crew that may still be taken.
 std::atomic<int>& free_helpers() {
     static std::atomic<int> count{
         static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U)) - 1};
@@ -55,27 +54,27 @@ class Pile {
 };
 
 /// Threads that work on a pile until its jobs are taken.
-class Helpers {
+class Crew {
   public:
-    Helpers(Pile& pile, std::size_t most) {
+    Crew(Pile& pile, std::size_t most) {
         threads_.reserve(most);
         while (threads_.size() < most && take_helper()) {
             try {
                 threads_.emplace_back([&pile] { pile.work(); });
-            } catch (const std::system_error&) {  // the caller goes on with those there are
+            } catch (const std::exception&) {  // the caller goes on with those there are
                 ++free_helpers();
                 return;
             }
         }
     }
-    ~Helpers() {
+    ~Crew() {
         for (std::thread& thread : threads_) {
             thread.join();
             ++free_helpers();
         }
     }
-    Helpers(const Helpers&) = delete;
-    Helpers& operator=(const Helpers&) = delete;
+    Crew(const Crew&) = delete;
+    Crew& operator=(const Crew&) = delete;
 
   private:
     std::vector<std::thread> threads_;
@@ -87,7 +86,7 @@ void side_by_side(std::span<const core::Job> jobs) {
     if (jobs.size() < 2) return core::one_after_another(jobs);
     Pile pile(jobs);
     {
-        const Helpers helpers(pile, jobs.size() - 1);
+        const Crew crew(pile, jobs.size() - 1);
         pile.work();
     }
     pile.rethrow();

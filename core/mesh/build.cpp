@@ -7,79 +7,11 @@
 
 #include "core/mesh/components.hpp"
 #include "core/mesh/overlap.hpp"
+#include "core/mesh/tin_builder.hpp"
 #include "core/predicates/orientation.hpp"
 #include "core/types/range.hpp"
 
 namespace tinsmith::core {
-
-/// Builds in passes, each of which needs what the earlier ones proved.
-class TinBuilder {
-  public:
-    TinBuilder(const MeshData& data, const MeshNames& names) : data_(data), names_(names) {}
-
-    Result<Tin> build() {
-        check_coordinates();
-        check_triangles();
-        if (!errors_.empty()) return std::move(errors_);
-        link();
-        if (!errors_.empty()) return std::move(errors_);
-        collect_fans();
-        if (!errors_.empty()) return std::move(errors_);
-        check_overlaps();
-        if (!errors_.empty()) return std::move(errors_);
-        index();
-        return std::move(tin_);
-    }
-
-  private:
-    void fault(ErrorCode code, std::string detail, ErrorPlace place) {
-        if (errors_.size() < kMaxFaults) errors_.push_back({code, std::move(detail), place});
-    }
-    static std::size_t name(std::span<const std::uint32_t> names, std::size_t i) {
-        return i < names.size() ? names[i] : i;
-    }
-    std::size_t triangle_name(std::size_t t) const { return name(names_.triangles, t); }
-    std::size_t vertex_name(std::size_t v) const { return name(names_.vertices, v); }
-    void triangle_fault(ErrorCode code, std::size_t t, const std::string& what) {
-        ErrorPlace place;
-        place.triangle = triangle_name(t);
-        const std::uint32_t v = data_.triangles[t][0];
-        if (v < data_.vertices.size()) place.position = data_.vertices[v].plan();
-        fault(code, "triangle " + std::to_string(*place.triangle) + " " + what, place);
-    }
-    void vertex_fault(ErrorCode code, std::size_t v, const std::string& what) {
-        ErrorPlace place;
-        place.vertex = vertex_name(v);
-        place.position = data_.vertices[v].plan();
-        fault(code, "vertex " + std::to_string(*place.vertex) + " " + what, place);
-    }
-
-    void check_coordinates();
-    void check_triangles();
-    void sort_sides();
-    Side find_side(VertexId from, VertexId to) const;
-    void link();
-    void mark_constraints();
-    void collect_fans();
-    void collect_fan(Side first);
-    bool holds_direction(Side s, Point2 p) const;
-    void check_copies();
-    Side side_at(VertexId v) const;
-    void folded_fault(VertexId named);
-    void check_overlaps();
-    void index();
-    void index_hints();
-
-    const MeshData& data_;
-    const MeshNames& names_;
-    Tin tin_;
-    Errors errors_;
-    std::vector<bool> bad_vertex_;           ///< whose coordinates are at fault
-    std::vector<std::uint32_t> first_side_;  ///< where a vertex's bucket begins in sides_
-    std::vector<Side> sides_;
-    std::vector<bool> corner_seen_;  ///< by the code of the side that starts there
-    std::vector<std::pair<VertexId, VertexId>> copies_;  ///< vertex, copy for a further fan
-};
 
 void TinBuilder::check_coordinates() {
     if (data_.triangles.empty()) {
@@ -138,90 +70,6 @@ void TinBuilder::check_triangles() {
     }
 }
 
-/// Sides by their first vertex, in each of its buckets by their second: O(n log d) however many
-/// triangles share a vertex.
-void TinBuilder::sort_sides() {
-    const std::size_t count = data_.triangles.size();
-    first_side_.assign(data_.vertices.size() + 1, 0);
-    for (const auto& triangle : data_.triangles)
-        for (const std::uint32_t v : triangle)
-            ++first_side_[v + 1];
-    for (std::size_t v = 0; v < data_.vertices.size(); ++v)
-        first_side_[v + 1] += first_side_[v];
-    sides_.resize(3 * count);
-    std::vector<std::uint32_t> filled(first_side_.begin(), first_side_.end() - 1);
-    for (std::uint32_t t = 0; t < count; ++t)
-        for (unsigned i = 0; i < 3; ++i)
-            sides_[filled[data_.triangles[t][i]]++] = Side({t}, i);
-    const auto by_destination = [this](Side l, Side r) {
-        const VertexId a = tin_.destination(l), b = tin_.destination(r);
-        return a != b ? a < b : l < r;
-    };
-    for (std::size_t v = 0; v < data_.vertices.size(); ++v)
-        std::sort(sides_.begin() + first_side_[v], sides_.begin() + first_side_[v + 1],
-                  by_destination);
-}
-
-/// The first side from one vertex to another; invalid where there is none.
-Side TinBuilder::find_side(VertexId from, VertexId to) const {
-    const auto end = sides_.begin() + first_side_[from.index() + 1];
-    const auto found =
-        std::lower_bound(sides_.begin() + first_side_[from.index()], end, to,
-                         [this](Side s, VertexId v) { return tin_.destination(s) < v; });
-    return found != end && tin_.destination(*found) == to ? *found : Side{};
-}
-
-void TinBuilder::link() {
-    const std::size_t count = data_.triangles.size();
-    tin_.reserve_growth(data_.vertices.size(), count);
-    for (std::size_t t = 0; t < count; ++t) {
-        const auto [a, b, c] = data_.triangles[t];
-        tin_.triangles_.push_back(
-            {{VertexId{a}, VertexId{b}, VertexId{c}}, {}, {static_cast<std::uint32_t>(t)}, 0});
-    }
-    tin_.next_facet_ = static_cast<std::uint32_t>(count);
-    sort_sides();
-    for (std::uint32_t t = 0; t < count; ++t) {
-        for (unsigned i = 0; i < 3; ++i) {
-            const Side side({t}, i);
-            const VertexId from = tin_.origin(side);
-            const VertexId to = tin_.destination(side);
-            if (find_side(from, to) == side) {
-                tin_.triangles_[t].twins[i] = find_side(to, from);
-                continue;
-            }
-            triangle_fault(ErrorCode::EdgeNotManifold, t,
-                           "repeats the edge from vertex " +
-                               std::to_string(vertex_name(from.value)) + " to " +
-                               std::to_string(vertex_name(to.value)) +
-                               " of another triangle on the same side: they overlap");
-        }
-    }
-    if (errors_.empty()) mark_constraints();
-    sides_ = {};
-    first_side_ = {};
-}
-
-void TinBuilder::mark_constraints() {
-    for (std::size_t i = 0; i < data_.constraints.size(); ++i) {
-        const auto [from, to] = data_.constraints[i];
-        Side side;
-        if (std::max(from, to) < data_.vertices.size()) {
-            side = find_side({from}, {to});
-            if (!side.valid()) side = find_side({to}, {from});
-        }
-        if (!side.valid()) {
-            fault(ErrorCode::VertexIndexOutOfRange,
-                  "constraint " + std::to_string(i) + " joins vertices " + std::to_string(from) +
-                      " and " + std::to_string(to) + ", which no edge of the mesh does",
-                  {});
-            continue;
-        }
-        for (const Side s : {side, tin_.twin(side)})
-            if (s.valid()) tin_.triangles_[s.triangle().index()].marks |= 1U << s.index();
-    }
-}
-
 void TinBuilder::collect_fans() {
     const std::size_t count = data_.vertices.size();
     for (const Point3& p : data_.vertices)
@@ -248,23 +96,48 @@ void TinBuilder::collect_fan(Side first) {
         tin_.vertices_.push_back({copy.x, copy.y, copy.z, {}});
         copies_.emplace_back(named, v);
     }
-    // Clockwise to the end of the fan, or once around.
+    const auto take = [this, v](Side s) {
+        corner_seen_[s.code] = true;
+        tin_.triangles_[s.triangle().index()].vertices[s.index()] = v;
+    };
+    // A fan that closes comes once around: each step turns left by less than half a turn, so that
+    // it comes from below to above, as comparisons say it, once for each time around.
+    const Point2 centre = tin_.plan(named);
+    const auto is_above = [&](Side s) {
+        const Point2 p = tin_.plan(tin_.destination(s));
+        return p.y > centre.y || (p.y == centre.y && p.x > centre.x);
+    };
+    const bool begins_above = is_above(first);
+    bool was_above = begins_above;
+    int rises = 0;
+    take(first);
+    Side s = tin_.twin(first.previous());
+    for (; s.valid() && s != first; s = tin_.twin(s.previous())) {  // counter-clockwise
+        const bool above = is_above(s);
+        rises += above && !was_above ? 1 : 0;
+        was_above = above;
+        take(s);
+    }
+    if (s.valid()) {
+        rises += begins_above && !was_above ? 1 : 0;
+        tin_.vertices_[v.index()].triangle = tin_.twin(first.previous()).triangle();
+        if (rises > 1) folded_fault(named);
+        return;
+    }
     Side start = first;
-    while (tin_.twin(start).valid() && tin_.twin(start).next() != first)
-        start = tin_.twin(start).next();
-
+    for (s = tin_.twin(first); s.valid(); s = tin_.twin(s)) {  // clockwise to the end of the fan
+        s = s.next();
+        take(s);
+        start = s;
+    }
+    tin_.vertices_[v.index()].triangle = start.triangle();
     // A fan that overlaps itself passes the direction in which it starts a second time.
     const Point2 direction = tin_.plan(tin_.destination(start));
-    bool overlaps = false;
-    Side s = start;
-    do {
-        corner_seen_[s.code] = true;
-        if (s != start && holds_direction(s, direction)) overlaps = true;
-        tin_.triangles_[s.triangle().index()].vertices[s.index()] = v;
-        s = tin_.twin(s.previous());
-    } while (s.valid() && s != start);
-    tin_.vertices_[v.index()].triangle = start.triangle();
-    if (overlaps) folded_fault(named);
+    for (s = tin_.twin(start.previous()); s.valid(); s = tin_.twin(s.previous())) {
+        if (!holds_direction(s, direction)) continue;
+        folded_fault(named);
+        return;
+    }
 }
 
 /// Whether the ray from the side's origin through `p` runs in the side's triangle, its first edge

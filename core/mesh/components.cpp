@@ -1,26 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mesh/components.hpp"
 
+#include <algorithm>
+
 namespace tinsmith::core {
 
-std::vector<TriangleId> find_components(const Tin& tin) {
-    std::vector<TriangleId> found;
-    std::vector<bool> seen(tin.triangle_count(), false);
-    std::vector<TriangleId> pending;
-    for (std::uint32_t first = 0; first < tin.triangle_count(); ++first) {
-        if (seen[first]) continue;
-        found.push_back({first});
-        seen[first] = true;
-        pending.push_back({first});
-        while (!pending.empty()) {
-            const TriangleId t = pending.back();
-            pending.pop_back();
-            for (const Side twin : tin.triangle(t).twins) {
-                if (!twin.valid() || seen[twin.triangle().index()]) continue;
-                seen[twin.triangle().index()] = true;
-                pending.push_back(twin.triangle());
-            }
+namespace {
+
+/// Joins slots to sets, each of which has its lowest slot for a root.
+class Sets {
+  public:
+    explicit Sets(std::size_t count) { above_.reserve(count); }
+
+    void add() { above_.push_back(static_cast<std::uint32_t>(above_.size())); }
+
+    std::uint32_t root(std::uint32_t slot) {
+        // Ends: what is above a slot is lower. Each step halves the way for those that come later.
+        while (above_[slot] != slot) {
+            above_[slot] = above_[above_[slot]];
+            slot = above_[slot];
         }
+        return slot;
+    }
+
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = root(a);
+        b = root(b);
+        above_[std::max(a, b)] = std::min(a, b);
+    }
+
+  private:
+    std::vector<std::uint32_t> above_;
+};
+
+}  // namespace
+
+std::vector<TriangleId> find_components(const Tin& tin) {
+    const auto count = static_cast<std::uint32_t>(tin.triangle_count());
+    Sets sets(count);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        sets.add();
+        for (const Side twin : tin.triangle({t}).twins) {
+            if (twin.valid() && twin.triangle().value < t) sets.join(t, twin.triangle().value);
+        }
+    }
+    std::vector<TriangleId> found;
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (sets.root(t) == t) found.push_back({t});
     }
     return found;
 }

@@ -3,7 +3,6 @@
 // leave out: reading the file, and writing as many bytes as the finished mesh has into memory that
 // was not used before. README.md in this folder says what came out. One thread, wall time: half of
 // it is the system's handing out of pages.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -81,16 +80,11 @@ int run(std::size_t triangles, int runs) {
 }  // namespace tinsmith::bench
 
 int main(int count, char** arguments) {
-    const long triangles = count > 1 ? std::atol(arguments[1]) : 0;
-    if (triangles < 2) {
-        std::fputs(tinsmith::bench::kUsage, stderr);
-        return 2;
-    }
-    try {
-        return tinsmith::bench::run(static_cast<std::size_t>(triangles),
-                                    std::max(count > 2 ? std::atoi(arguments[2]) : 5, 1));
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "dem_bench: %s\n", error.what());
-        return EXIT_FAILURE;
-    }
+    return tinsmith::bench::run_program(
+        "dem_bench", count, arguments, 5, [](const std::string& triangles, int runs) {
+            const long wanted = std::atol(triangles.c_str());
+            if (wanted >= 2) return tinsmith::bench::run(static_cast<std::size_t>(wanted), runs);
+            std::fputs(tinsmith::bench::kUsage, stderr);
+            return 2;
+        });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mesh/build.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -235,6 +236,43 @@ TEST(Build, RefusesConstraintsThatAreNoEdges) {
     ASSERT_EQ(codes(result).size(), 3u);
     EXPECT_NE(result.errors()[0].detail.find("constraint 1"), std::string::npos);
     EXPECT_NE(result.errors()[1].detail.find("constraint 2"), std::string::npos);
+}
+
+/// The triangles in another order, each beginning with another corner.
+MeshData shuffled(MeshData mesh) {
+    std::uint32_t lot = 1;
+    for (std::size_t i = mesh.triangles.size(); i > 1; --i) {
+        lot = lot * 1664525U + 1013904223U;
+        std::swap(mesh.triangles[i - 1], mesh.triangles[(lot >> 8) % i]);
+        auto& corners = mesh.triangles[i - 1];
+        std::rotate(corners.begin(), corners.begin() + (lot >> 4) % 3, corners.end());
+    }
+    return mesh;
+}
+
+TEST(Build, LinksAlikeWhetherItMustSortOrNot) {
+    std::vector<double> spokes;
+    for (int i = 0; i < 300; ++i)
+        spokes.push_back(1.2 * i);
+    MeshData holes = grid(9, 9);
+    std::erase_if(holes.triangles, [](const auto& t) { return t[0] == 40 || t[0] == 42; });
+    for (const MeshData& mesh :
+         {shuffled(grid(20, 13, test::Diagonals::Alternate)), grid(2, 2), shuffled(holes),
+          fan(spokes, true), shuffled(fan(spokes, true)), shuffled(fan(spokes, false))}) {
+        const Tin plain = test::built(mesh);
+        MeshData marked = mesh;
+        marked.constraints.push_back({mesh.triangles[0][0], mesh.triangles[0][1]});
+        const Tin sorted = test::built(marked);
+        EXPECT_TRUE(check_tin(plain).empty());
+        ASSERT_EQ(plain.triangle_count(), sorted.triangle_count());
+        for (std::uint32_t t = 0; t < plain.triangle_count(); ++t) {
+            EXPECT_EQ(plain.triangle({t}).twins, sorted.triangle({t}).twins);
+            EXPECT_EQ(plain.triangle({t}).vertices, sorted.triangle({t}).vertices);
+        }
+        for (std::uint32_t v = 0; v < plain.vertex_count(); ++v)
+            EXPECT_EQ(plain.vertex({v}).triangle, sorted.vertex({v}).triangle);
+        EXPECT_EQ(plain.components(), sorted.components());
+    }
 }
 
 TEST(Build, GivesTheSameMeshFromItsOwnData) {
