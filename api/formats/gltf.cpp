@@ -23,6 +23,8 @@ namespace {
 constexpr std::size_t kMostTriangles = std::numeric_limits<std::int32_t>::max() / 3;
 /// 2^32 - 1 is no index in glTF.
 constexpr std::size_t kMostVertices = std::numeric_limits<std::uint32_t>::max() - 1;
+/// Jobs on fewer triangles take no longer than a thread takes to start.
+constexpr std::size_t kWorthHelp = std::size_t{1} << 16;
 /// A thousand kilometres: keeps every length in metres well inside float32's range.
 constexpr double kLargestUnit = 1e6;
 
@@ -48,9 +50,31 @@ EncodeError bad_mesh(const char* what, std::size_t index) {
     return {EncodeFault::BadMesh, what + std::to_string(index)};
 }
 
+std::optional<EncodeError> find_wild_vertex(const core::MeshData& mesh) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const core::Point3& v = mesh.vertices[i];
+        if (!usable(v.x) || !usable(v.y) || !usable(v.z))
+            return bad_mesh("a coordinate that is not finite or too large at vertex ", i);
+    }
+    return std::nullopt;
+}
+
+std::optional<EncodeError> find_wrong_index(const core::MeshData& mesh) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (!names_vertices(mesh.triangles[i], mesh.vertices.size()))
+            return bad_mesh("a wrong vertex index in triangle ", i);
+    }
+    for (std::size_t i = 0; i < mesh.constraints.size(); ++i) {
+        if (!names_vertices(mesh.constraints[i], mesh.vertices.size()))
+            return bad_mesh("a wrong vertex index in constraint ", i);
+    }
+    return std::nullopt;
+}
+
 /// Draco's encoder is not hardened: what it takes for granted is looked at here.
 std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOptions& options,
-                                      const RegionPartition* regions) {
+                                      const RegionPartition* regions,
+                                      const core::Executor& executor) {
     if (regions != nullptr && regions->features.size() > kMostRegionFeatures)
         return EncodeError{EncodeFault::BadOption,
                            "regions=true numbers at most " + std::to_string(kMostRegionFeatures) +
@@ -63,20 +87,11 @@ std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOpti
         return EncodeError{EncodeFault::BadMesh, "the mesh has no triangle"};
     if (mesh.triangles.size() > kMostTriangles || mesh.vertices.size() > kMostVertices)
         return EncodeError{EncodeFault::TooLarge, "the mesh is too large; ask for a smaller bbox"};
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        const core::Point3& v = mesh.vertices[i];
-        if (!usable(v.x) || !usable(v.y) || !usable(v.z))
-            return bad_mesh("a coordinate that is not finite or too large at vertex ", i);
-    }
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        if (!names_vertices(mesh.triangles[i], mesh.vertices.size()))
-            return bad_mesh("a wrong vertex index in triangle ", i);
-    }
-    for (std::size_t i = 0; i < mesh.constraints.size(); ++i) {
-        if (!names_vertices(mesh.constraints[i], mesh.vertices.size()))
-            return bad_mesh("a wrong vertex index in constraint ", i);
-    }
-    return std::nullopt;
+    std::optional<EncodeError> of_vertices, of_indices;
+    const std::array<core::Job, 2> jobs{[&] { of_vertices = find_wild_vertex(mesh); },
+                                        [&] { of_indices = find_wrong_index(mesh); }};
+    executor(jobs);
+    return of_vertices ? of_vertices : of_indices;
 }
 
 std::vector<std::pair<std::string, GlbExtra>> extras_of(const core::MeshData& mesh,
@@ -194,9 +209,11 @@ std::variant<std::vector<GlbNode>, EncodeError> nodes_of(const SceneInput& input
 
 std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const GltfOptions& options,
                                             const RegionPartition* regions,
-                                            const core::Executor& executor,
+                                            const core::Executor& helpers,
                                             GltfContainer container) {
-    if (std::optional<EncodeError> fault = find_fault(mesh, options, regions))
+    static const core::Executor kAlone = core::one_after_another;
+    const core::Executor& executor = mesh.triangles.size() < kWorthHelp ? kAlone : helpers;
+    if (std::optional<EncodeError> fault = find_fault(mesh, options, regions, executor))
         return *std::move(fault);
     GltfResult result;
     Placed placed;

@@ -16,13 +16,12 @@ class ScenePlanner {
     ScenePlanner(const SceneInput& input, const PositionGrid& grid,
                  std::span<const GridPoint> points)
         : input_(input), grid_(grid), points_(points) {
-        Box<std::int32_t> box;
         for (const GridPoint& point : points)
-            box.add(point);
+            box_.add(point);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            fits_tile_ = fits_tile_ && box.high[axis] - box.low[axis] <= kDracoSteps;
+            fits_tile_ = fits_tile_ && box_.high[axis] - box_.low[axis] <= kDracoSteps;
             plan_.one_node =
-                plan_.one_node && box.low[axis] >= -kFloatSteps && box.high[axis] <= kFloatSteps;
+                plan_.one_node && box_.low[axis] >= -kFloatSteps && box_.high[axis] <= kFloatSteps;
         }
     }
 
@@ -114,9 +113,11 @@ class ScenePlanner {
         const auto corner = [&](std::uint32_t t) -> const GridPoint& {
             return points_[input_.mesh.triangles[t][0]];
         };
+        const bool is_whole = triangles.size() == input_.mesh.triangles.size();
         Box<std::int32_t> box;
-        for (const std::uint32_t t : triangles)
-            box.add(corner(t));
+        if (is_whole) box = box_;
+        for (std::size_t i = 0; i < triangles.size() && !is_whole; ++i)
+            box.add(corner(triangles[i]));
         const std::int64_t width = std::int64_t{box.high[0]} - box.low[0];
         const std::int64_t height = std::int64_t{box.high[1]} - box.low[1];
         const std::size_t axis = width >= height ? 0 : 1;
@@ -157,6 +158,7 @@ class ScenePlanner {
     const SceneInput& input_;
     const PositionGrid& grid_;
     std::span<const GridPoint> points_;
+    Box<std::int32_t> box_;
     bool fits_tile_ = true;
     ScenePlan plan_;
     std::optional<EncodeError> error_;
