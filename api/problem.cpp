@@ -129,7 +129,7 @@ void name_limits(Faults& faults) {
 std::string about_limit(const Faults& faults) {
     for (const Fault& fault : faults) {
         if (fault.limit.empty()) continue;
-        return " This is the limit " + fault.limit + "; GET /v1/limits has its value.";
+        return " (limit " + fault.limit + "; GET /v1/limits has its value)";
     }
     return {};
 }
