@@ -71,10 +71,11 @@ std::optional<EncodeError> find_wrong_index(const core::MeshData& mesh) {
     return std::nullopt;
 }
 
-/// Draco's encoder is not hardened: what it takes for granted is looked at here.
+/// Draco's encoder is not hardened: what it takes for granted is looked at here. The bounds come by
+/// the way.
 std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOptions& options,
                                       const RegionPartition* regions,
-                                      const core::Executor& executor) {
+                                      const core::Executor& executor, Box<double>& bounds) {
     if (regions != nullptr && regions->features.size() > kMostRegionFeatures)
         return EncodeError{EncodeFault::BadOption,
                            "regions=true numbers at most " + std::to_string(kMostRegionFeatures) +
@@ -88,8 +89,10 @@ std::optional<EncodeError> find_fault(const core::MeshData& mesh, const GltfOpti
     if (mesh.triangles.size() > kMostTriangles || mesh.vertices.size() > kMostVertices)
         return EncodeError{EncodeFault::TooLarge, "the mesh is too large; ask for a smaller bbox"};
     std::optional<EncodeError> of_vertices, of_indices;
-    const std::array<core::Job, 2> jobs{[&] { of_vertices = find_wild_vertex(mesh); },
-                                        [&] { of_indices = find_wrong_index(mesh); }};
+    const std::array<core::Job, 3> jobs{
+        [&] { bounds = bounds_in_metres(mesh, options.unit_to_metre); },
+        [&] { of_indices = find_wrong_index(mesh); },
+        [&] { of_vertices = find_wild_vertex(mesh); }};
     executor(jobs);
     return of_vertices ? of_vertices : of_indices;
 }
@@ -149,8 +152,8 @@ std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const Gl
 using Plainly = std::vector<std::array<float, 3>>;
 using Placed = std::variant<Plainly, GridPositions, EncodeError>;
 
-Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options, GltfResult& result) {
-    const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre);
+Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options,
+                     const Box<double>& bounds, GltfResult& result) {
     const std::optional<PositionGrid> coarsest = grid_for(bounds, options.tolerance);
     if (!coarsest)
         return EncodeError{EncodeFault::ToleranceTooFine,
@@ -167,9 +170,10 @@ Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options, Glt
     return placed;
 }
 
-Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options, GltfResult& result) {
+Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options,
+                     const Box<double>& bounds, GltfResult& result) {
     const double unit = options.unit_to_metre;
-    const std::array<double, 3> origin = whole_metre_middle(bounds_in_metres(mesh, unit));
+    const std::array<double, 3> origin = whole_metre_middle(bounds);
     std::array<double, 3> largest{};
     Plainly positions(mesh.vertices.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -213,7 +217,8 @@ std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const Gl
                                             GltfContainer container) {
     static const core::Executor kAlone = core::one_after_another;
     const core::Executor& executor = mesh.triangles.size() < kWorthHelp ? kAlone : helpers;
-    if (std::optional<EncodeError> fault = find_fault(mesh, options, regions, executor))
+    Box<double> bounds;
+    if (std::optional<EncodeError> fault = find_fault(mesh, options, regions, executor, bounds))
         return *std::move(fault);
     GltfResult result;
     Placed placed;
@@ -221,8 +226,9 @@ std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const Gl
     std::vector<core::Job> jobs;
     if (options.normals) jobs.emplace_back([&] { normals = smooth_normals(mesh, options.up); });
     jobs.emplace_back([&] {
-        placed = options.compression == Compression::None ? place_plainly(mesh, options, result)
-                                                          : place_on_grid(mesh, options, result);
+        placed = options.compression == Compression::None
+                     ? place_plainly(mesh, options, bounds, result)
+                     : place_on_grid(mesh, options, bounds, result);
     });
     executor(jobs);
     // Where no polygon has an inside there is nothing to tell apart.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,8 @@ class PieceCutter {
     Piece<N> cut(std::span<const Corners<N>> all, std::span<const std::uint32_t> chosen) {
         Piece<N> piece;
         piece.corners.reserve(chosen.size());
+        // A triangulation has about half as many vertices as triangles.
+        piece.vertices.reserve(std::min(number_.size(), chosen.size() / 2 + N));
         for (const std::uint32_t item : chosen) {
             Corners<N>& corners = piece.corners.emplace_back();
             for (std::size_t i = 0; i < N; ++i) {

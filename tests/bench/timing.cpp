@@ -53,6 +53,7 @@ int run_program(const char* name, int count, char** arguments, int usual_runs,
                 int (*run)(const std::string& part, int runs)) {
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_ARENA_MAX, 1);  // those of threads are given back whatever is said
     try {
         const int runs = count > 2 ? std::atoi(arguments[2]) : usual_runs;
         return run(count > 1 ? arguments[1] : "", std::max(runs, 1));
