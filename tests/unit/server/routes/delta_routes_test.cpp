@@ -258,7 +258,8 @@ TEST(DeltaOfTheLake, IsSmallBesideTheMesh) {
     const Response draco = ask("GET", "/mesh.glb", {}, kGlb);
     const Response plain = ask("GET", "/mesh.glb", {{"compression", "none"}}, kGlb);
     const auto percent = [&delta](const Response& of) {
-        return 100.0 * static_cast<double>(delta.body.size()) / static_cast<double>(of.sent().size());
+        return 100.0 * static_cast<double>(delta.body.size()) /
+               static_cast<double>(of.sent().size());
     };
     std::printf(
         "lake: delta %zu bytes, as JSON %zu; full GLB %zu (%.2f %%), plain GLB %zu (%.2f %%)\n",
