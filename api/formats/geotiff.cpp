@@ -21,12 +21,23 @@
 #include "api/formats/grid_mesh.hpp"
 #include "api/formats/json_reader.hpp"
 #include "api/formats/raster_warp.hpp"
+#include "api/formats/tiff_head.hpp"
 #include "api/projection.hpp"
 #include "api/terrain_system.hpp"
 
 namespace tinsmith::api {
 
 namespace {
+
+/// GDAL makes an object of some kilobytes for each band before anybody can ask how many there are.
+constexpr std::uint64_t kMostBandsOpened = 64;
+
+std::string too_many_bands(std::uint64_t bands) {
+    return "The raster has " + std::to_string(bands) +
+           " bands, and one of elevations is needed. Pick it, for example with: gdal_translate -b "
+           "1 "
+           "in.tif out.tif";
+}
 
 /// A block of a raster is held decoded: one may be larger than the raster, not without bound.
 constexpr std::size_t kSmallestBlockLimit = std::size_t{4096} * 4096;
@@ -111,12 +122,9 @@ std::optional<Refused> Raster::check_size() {
 }
 
 std::optional<Refused> Raster::check_band() {
-    if (const int bands = GDALGetRasterCount(dataset_); bands != 1) {
+    if (const int bands = GDALGetRasterCount(dataset_); bands != 1)
         return refused(FaultKind::Unsupported, "TIFF_BANDS",
-                       "The raster has " + std::to_string(bands) +
-                           " bands, and one of elevations is needed. Pick it, for example with: "
-                           "gdal_translate -b 1 in.tif out.tif");
-    }
+                       too_many_bands(static_cast<std::uint64_t>(std::max(bands, 0))));
     band_ = GDALGetRasterBand(dataset_, 1);
     const GDALDataType type = GDALGetRasterDataType(band_);
     if (GDALDataTypeIsComplex(type) != 0 || type == GDT_Int64 || type == GDT_UInt64) {
@@ -343,6 +351,8 @@ std::optional<Refused> Raster::convert() {
 
 Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits,
                              const TerrainOptions& options) {
+    if (const std::uint64_t bands = tiff_band_count(bytes); bands > kMostBandsOpened)
+        return {FaultKind::Unsupported, {"TIFF_BANDS", too_many_bands(bands), ""}};
     GdalScope messages;
     const GdalMemoryFile file(bytes);
     constexpr std::array<const char*, 2> drivers{"GTiff", nullptr};

@@ -109,7 +109,10 @@ std::vector<LyingFile> lying_tiffs() {
     append_number(big, std::uint16_t{0});
     append_number(big, std::uint64_t{16});
     append_number(big, ~std::uint64_t{0});
+    auto bands = strip(4, 64);
+    bands[kSamplesPerPixel] = 46'774;
     return {
+        {"46,774 bands", type, tiff(floats(4, 4, bands), four), 422},
         {"4e9 by 4e9 pixels", type, tiff(floats(4'000'000'000, 4'000'000'000, strip(4, 64)), four),
          400},
         {"2e9 by 2e9 pixels", type, tiff(floats(2'000'000'000, 2'000'000'000, strip(4, 64)), four),
