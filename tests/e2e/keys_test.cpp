@@ -335,19 +335,18 @@ TEST_F(KeyedService, HoldsKeysToTheirQuotas) {
     EXPECT_EQ(statuses.count(200) + statuses.count(429), 30U);
     EXPECT_EQ(refused.header("retry-after"), "1");
     EXPECT_NE(refused.body.find("max_requests_per_second"), std::string::npos);
-    // Bodies on their way count as under way.
+    // Bodies on their way count as under way: who has been invited to send one is in.
     Connection one(server.port()), two(server.port());
-    for (Connection* slow : {&one, &two})
+    for (Connection* slow : {&one, &two}) {
         slow->send("POST /v1/sessions HTTP/1.1\r\nHost: x\r\nContent-Type: text/csv\r\n" +
-                   bearer(bob) + "\r\nContent-Length: 10\r\n\r\n1");
-    Answer third;
-    EXPECT_TRUE(becomes_true([&] {
-        third = ask(server.port(), "GET", "/v1/limits", {bearer(bob)});
-        return third.body.find("quota max_requests of") != std::string::npos;
-    }));
+                   bearer(bob) + "\r\nContent-Length: 10\r\nExpect: 100-continue\r\n\r\n");
+        EXPECT_EQ(slow->read().status, 100);
+    }
+    const Answer third = ask(server.port(), "GET", "/v1/limits", {bearer(bob)});
     EXPECT_EQ(third.status, 429);
+    EXPECT_NE(third.body.find("quota max_requests of"), std::string::npos) << third.body;
     for (Connection* slow : {&one, &two})
-        slow->send(",2,3\n4,5,");
+        slow->send("1,2,3\n4,5,");
     EXPECT_NE(one.read().status, 0);
     EXPECT_NE(two.read().status, 0);
     EXPECT_TRUE(becomes_true(
