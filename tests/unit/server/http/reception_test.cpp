@@ -228,12 +228,15 @@ TEST(Reception, LetsNobodyInWhereAllAreServed) {
     ReceptionOptions options;
     options.max_connections = 2;
     ReceptionAtWork reception(options);
-    const Client one(reception.port()), two(reception.port()), three(reception.port());
-    for (const Client* client : {&one, &two, &three})
-        client->send(kGet);
+    const Client one(reception.port());
+    one.send(kGet);
     Arrival first = reception.next();
+    const Client two(reception.port());
+    two.send(kGet);
     const Arrival second = reception.next();
     ASSERT_TRUE(first.connection && second.connection);
+    const Client three(reception.port());
+    three.send(kGet);
     EXPECT_FALSE(reception.next(milliseconds(100)).connection) << "there is no place for it yet";
     first.connection.reset();
     EXPECT_TRUE(reception.next().connection);
