@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "api/terrain_options.hpp"
+#include "server/config_environment.hpp"
 
 namespace tinsmith::server {
 
@@ -146,19 +147,26 @@ void add_limits(CLI::App& app, Limits& limits) {
 }
 
 /// "https://maps.example:8443": what browsers send as Origin, to the letter.
+std::string fault_of_origin(const std::string& text) {
+    const std::size_t slashes = text.find("://");
+    const std::string host = slashes == std::string::npos ? "" : text.substr(slashes + 3);
+    const bool is_plain = std::none_of(text.begin(), text.end(), [](char c) {
+        return c <= ' ' || c > '~' || c == '"' || c == '\\' || (c >= 'A' && c <= 'Z');
+    });
+    const bool is_origin =
+        slashes > 0 && !host.empty() && host.find_first_of("/?#@*,") == host.npos;
+    return text == "*" || (is_plain && is_origin)
+               ? std::string()
+               : "\"" + text + "\" is no origin such as https://maps.example, nor *";
+}
+
+/// Newer releases of the library ask for a variable's list as a whole.
 CLI::Validator origin() {
     return {[](std::string& text) {
-                const std::size_t slashes = text.find("://");
-                const std::string host =
-                    slashes == std::string::npos ? "" : text.substr(slashes + 3);
-                const bool is_plain = std::none_of(text.begin(), text.end(), [](char c) {
-                    return c <= ' ' || c > '~' || c == '"' || c == '\\' || (c >= 'A' && c <= 'Z');
-                });
-                const bool is_origin =
-                    slashes > 0 && !host.empty() && host.find_first_of("/?#@*,") == host.npos;
-                return text == "*" || (is_plain && is_origin)
-                           ? std::string()
-                           : "\"" + text + "\" is no origin such as https://maps.example, nor *";
+                std::string fault;
+                for (const std::string& each : CLI::detail::split(text, ','))
+                    if (fault.empty()) fault = fault_of_origin(each);
+                return fault;
             },
             "", "origin"};
 }
@@ -376,6 +384,10 @@ Command parse_command_line(int argc, const char* const* argv) {
         return kExitUsage;
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? kExitOk : kExitUsage;
+    }
+    if (const std::string fault = refused_variable(app); !fault.empty()) {
+        std::cerr << fault << "\nRun with --help for more information.\n";
+        return kExitUsage;
     }
     if (serve_command->parsed()) return serve;
     if (integrate_command->parsed()) return integrate;

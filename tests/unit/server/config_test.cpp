@@ -206,6 +206,12 @@ TEST(CommandLine, ReadsWhoMayCallAndHow) {
     const ServeConfig environment = serve({});
     ::unsetenv("TINSMITH_CORS_ORIGIN");
     ::unsetenv("TINSMITH_REQUIRE_IF_MATCH");
+    for (const char* bad : {"TINSMITH_MAX_SESSIONS", "TINSMITH_MAX_BODY_BYTES", "TINSMITH_PORT",
+                            "TINSMITH_CORS_ORIGIN", "TINSMITH_LOG_LEVEL"}) {
+        ::setenv(bad, "https://a.example,-5", 1);
+        EXPECT_EQ(exit_code({"serve"}), kExitUsage) << bad;
+        ::unsetenv(bad);
+    }
     EXPECT_TRUE(environment.policy.require_if_match);
     EXPECT_EQ(environment.policy.cors_origins,
               (std::vector<std::string>{"https://a.example", "https://b.example"}));
