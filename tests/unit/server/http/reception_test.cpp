@@ -112,7 +112,7 @@ TEST(Reception, KeepsConnectionsForTheirNextRequest) {
 }
 
 TEST(Reception, CutsHeadsThatTakeTooLong) {
-    ReceptionAtWork reception(with_waits(100, 60'000));
+    ReceptionAtWork reception(with_waits(1000, 60'000));
     const Client drips(reception.port());
     drips.send("GET / HTTP/1.1\r\n");
     Arrival arrival;
@@ -125,9 +125,10 @@ TEST(Reception, CutsHeadsThatTakeTooLong) {
 }
 
 TEST(Reception, ClosesWhoSaysNothing) {
-    ReceptionAtWork reception(with_waits(50, 50));
-    Client silent(reception.port());
+    ReceptionAtWork for_the_silent(with_waits(50, 60'000));
+    Client silent(for_the_silent.port());
     EXPECT_TRUE(silent.is_closed());
+    ReceptionAtWork reception(with_waits(60'000, 50));
     Client idle(reception.port());
     idle.send(kGet);
     Arrival arrival = reception.next();
