@@ -30,6 +30,8 @@ constexpr milliseconds kTickWhenPaused{20};
 constexpr milliseconds kPauseWithoutMemory{100};
 /// Connections taken before the others are looked at again.
 constexpr int kAcceptedAtOnce = 64;
+/// So often at the end: as many as the kernel holds for a listener.
+constexpr int kLastTurns = 16;
 
 bool watch(int events, int operation, int socket, std::uint32_t what) {
     epoll_event event{};
@@ -129,7 +131,8 @@ void Reception::take_turn(int socket, std::vector<Arrival>& arrived) try {
 
 /// What has come by now was sent in good faith.
 void Reception::take_last_turn(std::vector<Arrival>& arrived) {
-    if (!failed_) take_turn(listener_, arrived);
+    for (int i = 0; i < kLastTurns && !failed_ && has_pending(); ++i)
+        take_turn(listener_, arrived);
     ::close(std::exchange(listener_, -1));
     std::vector<int> sockets;
     for (const Wait wait : {Wait::Idle, Wait::First, Wait::Head})

@@ -218,10 +218,10 @@ TEST(Reception, TakesAnEmptyLineForNoRequest) {
 TEST(Reception, HandsOverWhatHasComeByItsEnd) {
     ReceptionAtWork reception;
     std::list<Client> clients;
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 200; ++i)
         clients.emplace_back(reception.port()).send(kGet);
     reception.stop();
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 200; ++i)
         EXPECT_TRUE(reception.next(milliseconds(0)).connection) << i;
 }
 
