@@ -20,8 +20,9 @@ namespace {
 constexpr std::chrono::milliseconds kLookAgain{50};
 
 const api::Problem kTooManyWait{
-    api::ProblemType::NotReady,
-    "More requests wait than the server holds; nothing was done. Send it again.",
+    api::ProblemType::Busy,
+    "More requests wait than the server holds; nothing was done. Send it again when Retry-After "
+    "says.",
     {}};
 
 ReceptionOptions reception_of(const HttpOptions& options) {

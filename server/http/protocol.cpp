@@ -187,17 +187,16 @@ class Protocol::Impl {
         Exchange exchange;
         current_exchange = &exchange;
         ConnectionStream stream(connection, options_.wait, pace_);
-        bool closed = false;
-        bool fine = false;
+        bool closed = false, fine = false;
         try {
             fine = library_.exchange(stream, closed);
         } catch (const std::exception& failure) {
             log_event(LogLevel::Error, "defect", failure.what());
         }
         current_exchange = nullptr;
-        if (!fine) return After::Drop;
-        const std::string_view body = exchange.answer.sent();
-        if (!stream.flush(exchange.is_for_head ? std::string_view() : body)) return After::Drop;
+        std::string_view body;
+        if (!exchange.is_for_head) body = exchange.answer.sent();
+        if (!fine || !stream.flush(body)) return After::Drop;
         return closed || exchange.close ? After::Part : After::Keep;
     }
 
@@ -207,6 +206,7 @@ class Protocol::Impl {
         request.remote_address = connection.remote().first;
         Response response = refuse(request, problem);
         response.with("X-Request-Id", request.id);
+        if (problem.type == api::ProblemType::Busy) response.with("Retry-After", "1");
         calls_.finish(request, response);
         calls_.told(request, response, 0.0);
         const std::string text =

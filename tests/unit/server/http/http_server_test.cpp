@@ -37,6 +37,7 @@ class ServerAtWork {
     }
 
     std::atomic<int> answered{0};
+    std::atomic<bool> is_held{false};  ///< no request is answered for now
 
   private:
     static HttpOptions with_free_port(HttpOptions options) {
@@ -48,6 +49,8 @@ class ServerAtWork {
         return {[](Request&, bool) { return std::nullopt; },
                 [this](const Request& request) {
                     ++answered;
+                    while (is_held)
+                        std::this_thread::sleep_for(std::chrono::milliseconds(1));
                     if (request.path == "/throws") throw std::bad_alloc();
                     return ok("application/json", body_);
                 },
@@ -97,6 +100,36 @@ TEST(HttpServerAlone, SendsAllToWhoReadsSlowly) {
     client.send(kGet);
     client.read_at_most(2'000'000);  // bytes a second
     EXPECT_EQ(client.read().body.size(), body.size());
+}
+
+/// What waits for a thread has a bound; what is beyond it is told when to come again.
+TEST(HttpServerAlone, RefusesWhatItCannotHold) {
+    HttpOptions options;
+    options.threads = 2;
+    ServerAtWork server(options);
+    server.is_held = true;
+    std::string head = "GET / HTTP/1.1\r\nHost: x\r\n";
+    for (int i = 0; i < 7; ++i)
+        head += "X-" + std::to_string(i) + ": " + std::string(7900, 'y') + "\r\n";
+    std::list<Client> clients;
+    for (int i = 0; i < 200; ++i)
+        clients.emplace_back(server.port(), 30).send(head + "\r\n");  // 11 MB
+    int refused = 0;
+    EXPECT_EQ(clients.back().read().status, 503) << "while the others wait";
+    server.is_held = false;
+    clients.pop_back();
+    for (Client& client : clients) {
+        const e2e::Answer answer = client.read();
+        if (answer.status != 503) {
+            EXPECT_EQ(answer.status, 200);
+            continue;
+        }
+        ++refused;
+        EXPECT_EQ(answer.header("retry-after"), "1");
+        EXPECT_EQ(answer.header("connection"), "close");
+    }
+    EXPECT_GT(refused, 10);
+    EXPECT_LT(refused, 100);
 }
 
 TEST(HttpServerAlone, CutsWhoReadsNothing) {
