@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that knows cpp-httplib. It must build against 0.11 (Debian 12) and 0.18 (Debian 13).
 #include "server/http/protocol.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include <httplib.h>
@@ -14,6 +12,7 @@
 #include "api/field_list.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/incoming.hpp"
+#include "server/http/library.hpp"
 #include "server/http/pace.hpp"
 #include "server/http/plain_answer.hpp"
 #include "server/log.hpp"
@@ -62,88 +61,6 @@ Head head_of(const httplib::Request& raw) {
 httplib::Request& mutable_request(const httplib::Request& raw) {
     return const_cast<httplib::Request&>(raw);
 }
-
-/// A connection as the library sees it: it reads heads and bodies and writes heads.
-class ConnectionStream final : public httplib::Stream {
-  public:
-    /// `longest`: for one read or write. What it writes has to be taken at that pace.
-    ConnectionStream(Connection& connection, std::chrono::seconds longest, Pace pace)
-        : connection_(connection), longest_(longest), pace_(pace) {}
-
-    bool is_readable() const override { return true; }
-    bool is_writable() const override { return true; }
-
-    ssize_t read(char* to, std::size_t size) override {
-        // The client may wait for "100 Continue" before it sends more.
-        if (!head_.empty() && !flush()) return -1;
-        return connection_.read(to, size, longest_);
-    }
-
-    ssize_t write(const char* bytes, std::size_t size) override {
-        head_.append(bytes, size);
-        return static_cast<ssize_t>(size);
-    }
-
-    /// Sends what the library has written, and a body after it. False: it was not taken.
-    bool flush(std::string_view body = {}) {
-        std::string_view head = head_;
-        const auto start = Clock::now();
-        for (std::size_t sent = 0; !head.empty() || !body.empty();) {
-            const long part = connection_.write(head, body, longest_);
-            if (part <= 0) return false;
-            const auto count = static_cast<std::size_t>(part);
-            const std::size_t of_head = std::min(count, head.size());
-            head.remove_prefix(of_head);
-            body.remove_prefix(count - of_head);
-            sent += count;
-            if (pace_.is_too_slow(start, sent) && !(head.empty() && body.empty())) return false;
-        }
-        head_.clear();
-        return true;
-    }
-
-    void get_remote_ip_and_port(std::string& address, int& port) const override {
-        std::tie(address, port) = connection_.remote();
-    }
-    void get_local_ip_and_port(std::string& address, int& port) const override {
-        std::tie(address, port) = connection_.local();
-    }
-
-    /// None: the library compares it with what select(2) can bear, which is never asked here.
-    socket_t socket() const override { return INVALID_SOCKET; }
-
-  private:
-    Connection& connection_;
-    const std::chrono::seconds longest_;
-    const Pace pace_;
-    std::string head_;  ///< written and not sent: it goes out with the body, in one system call
-};
-
-/// The library's server without its sockets and threads.
-class Library : public httplib::Server {
-  public:
-    /// Reads one request and writes its answer. False: that failed. Sets `closed` where the library
-    /// takes the request for the last.
-    bool exchange(ConnectionStream& stream, bool& closed) {
-        return exchange(*this, stream, closed);
-    }
-
-  private:
-    /// A template, so that what one of the releases does not have is not looked at.
-    template <typename Self>
-    static bool exchange(Self& self, ConnectionStream& stream, bool& closed) {
-        if constexpr (requires { self.process_request(stream, false, closed, nullptr); }) {
-            return self.process_request(stream, false, closed, nullptr);
-        } else {
-            std::string remote, local;
-            int remote_port = 0, local_port = 0;
-            stream.get_remote_ip_and_port(remote, remote_port);
-            stream.get_local_ip_and_port(local, local_port);
-            return self.process_request(stream, remote, remote_port, local, local_port, false,
-                                        closed, nullptr);
-        }
-    }
-};
 
 /// One request on its way through the library, which calls back on the same thread.
 struct Exchange {

@@ -10,7 +10,7 @@
 namespace tinsmith::server {
 
 /// HTTP/1.1 on a connection: one request after the other, each judged by `check_request_head`
-/// before its body is read. The library underneath is seen in protocol.cpp
+/// before its body is read. The library underneath is seen in library.hpp and protocol.cpp
 /// alone.
 class Protocol {
   public:

@@ -35,7 +35,8 @@ struct Home {
     bool one_file_only;
 };
 const std::array<Home, 17> kHomes = {{
-    {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http/protocol\.cpp)", true},
+    {"cpp-httplib", R"((cpp-httplib/)?httplib\.h)", R"(server/http/(library\.hpp|protocol\.cpp))",
+     false},
     {"Draco", R"(draco/.*)", R"(api/formats/draco[a-z_]*\.cpp)", false},
     {"tinygltf", R"((tinygltf/)?tiny_gltf\.h)", R"(api/formats/gltf[a-z_]*\.cpp)", true},
     {"GDAL", R"((gdal/)?(gdal|ogr|cpl)[a-z_]*\.h)",
