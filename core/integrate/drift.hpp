@@ -18,6 +18,8 @@ class Drift {
     /// puts it off at most, so that no more than that has to be measured only rarely.
     Drift(std::size_t first, double usual) : first_(first), usual_(usual), largest_bend_(usual) {}
 
+    /// Vertices from before the request have lower ids.
+    std::size_t first() const { return first_; }
     double usual() const { return usual_; }
 
     /// Makes room for so many more vertices.

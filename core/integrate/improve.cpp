@@ -8,6 +8,7 @@
 
 #include "core/mesh/walk.hpp"
 #include "core/predicates/orientation.hpp"
+#include "core/types/pair.hpp"
 
 namespace tinsmith::core {
 
@@ -20,15 +21,6 @@ struct Leg {
     Leg(const Tin::Vertex& from, const Tin::Vertex& to)
         : x(to.x - from.x), y(to.y - from.y), z(to.z - from.z) {}
     double squared() const { return x * x + y * y + z * z; }
-};
-
-struct Cosine {
-    double value;  ///< times the lengths of both legs
-    double size;   ///< of the terms that make it up, which bounds its rounding
-
-    Cosine(const Leg& u, const Leg& v)
-        : value(u.x * v.x + u.y * v.y + u.z * v.z),
-          size(std::fabs(u.x * v.x) + std::fabs(u.y * v.y) + std::fabs(u.z * v.z)) {}
 };
 
 /// Twice the area in plan of a counter-clockwise triangle: the same double whichever of its
@@ -78,6 +70,28 @@ void Improver::improve(const std::vector<VertexId>& vertices) {
     }
 }
 
+std::uint64_t Improver::improve_across(std::span<const Side> outer, bool is_known) {
+    const std::uint64_t before = edges_swapped_;
+    pending_.insert(pending_.end(), outer.begin(), outer.end());
+    seen_ = tin_.vertex_count();
+    unasked_ = 8;
+    while (!pending_.empty()) {
+        const Side s = pending_.back();
+        pending_.pop_back();
+        if (!may_swap(s) || !should_swap(s)) continue;
+        const Side diagonal = surgery_.swap_edge(s);
+        ++edges_swapped_;
+        const Side across = tin_.twin(diagonal);
+        pending_.push_back(diagonal.previous());
+        pending_.push_back(across.next());
+        if (is_known)
+            unasked_ = 8;
+        else
+            pending_.insert(pending_.end(), {diagonal.next(), across.previous()});
+    }
+    return edges_swapped_ - before;
+}
+
 bool Improver::improve(Side s) {
     unasked_ = 1;
     if (!may_swap(s) || !should_swap(s)) return false;
@@ -119,18 +133,31 @@ inline bool Improver::may_swap(Side s) const {
 //       \ /           negative. Areas in plan stand for the sines, for all triangles of a facet
 //        d            are foreshortened alike.
 bool Improver::should_swap(Side s) {
-    const Side across = tin_.twin(s);
-    const Quad quad{tin_.origin(s), tin_.destination(s), tin_.apex(s), tin_.apex(across)};
+    const Tin::Triangle& beside = tin_.triangle(s.triangle());
+    const Side across = beside.twins[s.index()];
+    const Quad quad{beside.vertices[s.index()], beside.vertices[Side::next_of(s.index())],
+                    beside.vertices[Side::previous_of(s.index())], tin_.apex(across)};
     const Tin::Vertex& a = tin_.vertex(quad.a);
     const Tin::Vertex& b = tin_.vertex(quad.b);
     const Tin::Vertex& c = tin_.vertex(quad.c);
     const Tin::Vertex& d = tin_.vertex(quad.d);
-    const Cosine at_c(Leg(c, a), Leg(c, b));
-    const Cosine at_d(Leg(d, a), Leg(d, b));
-    const double above = doubled_area(a.plan(), b.plan(), c.plan());
-    const double below = doubled_area(b.plan(), a.plan(), d.plan());
-    const double sine = at_c.value * below + at_d.value * above;
-    const double size = at_c.size * below + at_d.size * above;
+    // At c and at d the steps are the same: legs from there to a and b; the cosine times their
+    // lengths; the terms that make it up; twice the area.
+    const Pair x{c.x, d.x}, y{c.y, d.y}, z{c.z, d.z};
+    const Pair ax = a.x - x, ay = a.y - y, az = a.z - z;
+    const Pair bx = b.x - x, by = b.y - y, bz = b.z - z;
+    const Pair east = ax * bx, north = ay * by, up = az * bz;
+    const Pair cosine = east + north + up;
+    const Pair terms = magnitudes(east) + magnitudes(north) + magnitudes(up);
+    const Pair left = ax * by, right = ay * bx;
+    const Pair area = left - right;
+    const Pair doubt =
+        detail::kAreaDoubt * (magnitudes(left) + magnitudes(right)) - magnitudes(area);
+    double above = area[0], below = -area[1];
+    if (!(doubt[0] < 0.0)) above = doubled_area(a.plan(), b.plan(), c.plan());
+    if (!(doubt[1] < 0.0)) below = doubled_area(b.plan(), a.plan(), d.plan());
+    const double sine = cosine[0] * below + cosine[1] * above;
+    const double size = terms[0] * below + terms[1] * above;
     // Areas are right to 2^-36. What is nearer to zero than that may be a circle: ask the angles.
     if (sine > 0x1p-35 * size) return false;
     if (sine > -0x1p-16 * size || unasked_ == 0) return is_better_swapped(quad);

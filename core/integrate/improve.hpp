@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/mesh/surgery.hpp"
@@ -30,6 +31,14 @@ class Improver {
     /// larger in lexicographic order, but for so many as are not asked for that, and there are
     /// finitely many triangulations. Cost: linear in the swaps.
     void improve(const std::vector<VertexId>& vertices);
+
+    /// Improves around a new vertex at once, so that it need not be among those of the next call:
+    /// the edges across from it, by their sides there, and as far as swaps reach from these.
+    /// `is_known`: no edge of the facets around it would have been better swapped before it came.
+    /// Then only edges across from it can fail (Lawson 1977), and of two diagonals that are as good
+    /// either may be there; each swap takes one away that does not end at the vertex. Cost: linear
+    /// in the swaps, whose number it returns.
+    std::uint64_t improve_across(std::span<const Side> outer, bool is_known);
 
     /// Swaps one edge if it is free to and better swapped. False: it stays.
     bool improve(Side s);

@@ -29,7 +29,8 @@ March::March(Surgery& surgery, const IntegrateOptions& options, const MarchLimit
       options_(options),
       limits_(limits),
       drift_(drift),
-      improver_(improver) {
+      improver_(improver),
+      knows_facets_(improver != nullptr && drift.first() == tin_.built_vertex_count()) {
     reach_of_rounding_ = reach_of_rounding(tin_);
     const Bounds& box = tin_.bounds();
     flat_ = 1e-10 * distance_between(box.min.plan(), box.max.plan());
@@ -47,6 +48,7 @@ bool March::begin(std::size_t index, const Path& path, const Way& way) {
     // Elevations make no two vertices of what may be one.
     if (!path.elevations.empty()) way_.meets_all = true;
     set_snap(options_.snap);
+    may_land_ = options_.snap == 0.0 && !way_.meets_all && !way_.settles_first;
     path_index_ = index;
     exit_ahead_ = {};
     from_ = to_ = 0;
@@ -148,6 +150,8 @@ bool March::march_to_end() {
         }
         if (!within_budget()) return false;
         Departure departure{Departure::Kind::ThroughEdge, std::exchange(known, {})};
+        // From the end of a plain step the way mostly goes on by another.
+        const bool may_land = may_land_ && !departure.side.valid();
         if (!departure.side.valid()) departure = leave(tin_, at_, end_, first_look());
         switch (departure.kind) {
             case Departure::Kind::AlongEdge:
@@ -155,7 +159,14 @@ bool March::march_to_end() {
                 break;
             case Departure::Kind::ThroughEdge: {
                 Side exit = departure.side;
-                if (!stride(exit) || (exit.valid() && !cross(exit))) return false;
+                const bool lands = may_land && lands_in(exit);
+                if (!lands && !stride(exit)) return false;
+                if (!exit.valid()) break;
+                if (lands || (may_land_ && lands_in(exit))) {
+                    land(exit);
+                } else if (!cross(exit)) {
+                    return false;
+                }
                 break;
             }
             case Departure::Kind::Outside:

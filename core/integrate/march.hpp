@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -181,12 +182,25 @@ class March {
     struct Seam {
         Side free;                 ///< an edge that may be better swapped, before the step
         bool is_next = false;      ///< that is the next side, not the previous
+        bool is_whole = false;     ///< the facet that the step enters was one triangle
         bool is_simple = false;    ///< all is known: no other edge there may swap
         bool covers_open = false;  ///< among them what the last step left open
     };
     Seam seam_of(const Passing& here) const;
-    void close(const Seam& seam, TriangleId other, TriangleId entered);
+    /// Sides of the four triangles around the new vertex, across from it.
+    struct Outer {
+        Side behind;
+        Side behind_too;
+        Side other;
+        Side entered;
+    };
+    bool close(const Seam& seam, const Outer& outer);
+    bool close_all(const Seam& seam, const Outer& outer);
     void flush_open();
+
+    // landing.cpp
+    void land(Side exit);
+    bool lands_in(Side exit) const;
 
     // connect.cpp
     bool connect(VertexId t);
@@ -228,6 +242,9 @@ class March {
     const MarchLimits& limits_;
     Drift& drift_;
     Improver* improver_;
+    /// What the improver is told of at once is all that can fail: each facet was one triangle when
+    /// the request began.
+    const bool knows_facets_;
     double reach_of_rounding_;   ///< 4 ulp of the mesh's largest coordinate
     double flat_;                ///< a step of the surface that is none
     double snap_;                ///< of this segment
@@ -246,10 +263,14 @@ class March {
     std::size_t path_index_ = 0;
     std::size_t from_ = 0;  ///< the input segment's points in the path
     std::size_t to_ = 0;
-    VertexId first_;  ///< where the path began; invalid: outside the mesh
-    Side way_on_;     ///< a side at `at_` near the way on, to look at first; any side is right
-    VertexId at_;     ///< where the march stands; invalid: outside the mesh
-    Point2 start_;    ///< the input segment
+    VertexId first_;         ///< where the path began; invalid: outside the mesh
+    bool may_land_ = false;  ///< on this path, where that is plain
+    /// Landings that the caller is to improve around. Along an arc each new vertex may turn the
+    /// edges of all before it, and many together turn fewer.
+    std::size_t put_off_ = 0;
+    Side way_on_;   ///< a side at `at_` near the way on, to look at first; any side is right
+    VertexId at_;   ///< where the march stands; invalid: outside the mesh
+    Point2 start_;  ///< the input segment
     Point2 end_;
     Point2 ahead_;     ///< where the path goes on from its end
     Side exit_ahead_;  ///< the edge that the way there goes through, if a plain step has seen it

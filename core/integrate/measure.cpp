@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/mesh/surface.hpp"
+#include "core/types/pair.hpp"
 
 namespace tinsmith::core {
 
@@ -64,13 +65,9 @@ class Lowest {
     std::vector<double> values_;
 };
 
-/// Two doubles in one register: east and north take the same steps.
-typedef double Pair __attribute__((vector_size(16)));  // NOLINT(modernize-use-using): GCC 12
+/// East and north take the same steps.
 inline Pair plan_of(const Tin::Vertex& v) {
     return Pair{v.x, v.y};
-}
-inline double sum_of(Pair p) {
-    return p[0] + p[1];
 }
 
 /// How far off a glance may be.

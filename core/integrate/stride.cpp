@@ -3,6 +3,7 @@
 // far from everything that rounding could confuse it with. It does what `cross_facet_edge` does
 // there, with each vertex and triangle looked at once.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/integrate/march.hpp"
@@ -182,7 +183,6 @@ bool March::stride(Side& exit) {
     const std::uint32_t below =
         std::max(drift_.nesting_of(here.a_id), drift_.nesting_of(here.b_id));
     const double z = elevation_between(here.a, here.b, p);
-    const TriangleId other = here.across.triangle();
     const Point3 point{p.x, p.y, z};
     const VertexId v = surgery_.split_and_pass(here.exit, point, past_a, options_.lock);
     const TriangleId entered{static_cast<std::uint32_t>(tin_.triangle_count() - 1)};
@@ -193,10 +193,14 @@ bool March::stride(Side& exit) {
     }
     tally_.chains.back().vertices.push_back(v);
     at_ = v;
-    close(seam, other, entered);
-    const Side way_on(entered, past_a ? 0U : 1U);  // from p to a, or from b to p
-    way_on_ = way_on;
-    const Side exit = goes_on ? way_on.next() : Side{};
+    way_on_ = {entered, past_a ? 0U : 1U};  // from p to a or to d
+    const Side beyond = way_on_.next();
+    const bool stays = close(seam, {here.exit.previous(),
+                                    {{entered.value - 1}, 1},
+                                    chosen(past_a, here.across.previous(), here.across.next()),
+                                    beyond});
+    if (!stays) way_on_ = {};
+    const Side exit = goes_on && stays ? beyond : Side{};
     if (!is_end) return exit;
     exit_ahead_ = exit;
     return {};
@@ -213,8 +217,8 @@ bool March::stride(Side& exit) {
     const unsigned next_is_free = tin_.is_free(next), previous_is_free = tin_.is_free(previous);
     const TriangleId behind = here.exit.triangle();
     seam.covers_open = (unsigned{behind == open_entered_} | unsigned{behind == open_other_}) != 0;
-    seam.is_simple = ((next_is_free & previous_is_free) |
-                      sides_inside(tin_.triangle(here.across.triangle()))) == 0;
+    seam.is_whole = sides_inside(tin_.triangle(here.across.triangle())) == 0;
+    seam.is_simple = seam.is_whole && (next_is_free & previous_is_free) == 0;
     if ((unsigned{seam.is_simple} & (next_is_free | previous_is_free)) == 0) return seam;
     const Side free(behind, chosen(next_is_free != 0, next.index(), previous.index()));
     const std::uint32_t beyond = sides_inside(tin_.triangle(tin_.twin(free).triangle()));
@@ -224,22 +228,31 @@ bool March::stride(Side& exit) {
     return seam;
 }
 
-/// Improves what the split left, or leaves it to the improver.
-[[gnu::always_inline]] inline void March::close(const Seam& seam, TriangleId other,
-                                                TriangleId entered) {
+/// Improves what the split left, or leaves it to the improver. False: swaps may have changed the
+/// triangle that the way enters.
+[[gnu::always_inline]] inline bool March::close(const Seam& seam, const Outer& outer) {
     open_ = {};
-    if (!seam.is_simple) {
-        changed_.push_back(at_);
-        return;
-    }
+    if (!seam.is_simple) return close_all(seam, outer);
     open_ = at_;
-    open_entered_ = entered;
-    open_other_ = other;
-    if (!seam.free.valid()) return;
-    // The split moved the side after the edge to the new triangle behind it, as side 1.
+    open_entered_ = outer.entered.triangle();
+    open_other_ = outer.other.triangle();
+    if (!seam.free.valid()) return true;
+    // The split moved the side after the edge to the new triangle behind it.
     Side free;
-    free.code = chosen(seam.is_next, Side(TriangleId{entered.value - 1}, 1).code, seam.free.code);
+    free.code = chosen(seam.is_next, outer.behind_too.code, seam.free.code);
     improver_->improve(free);
+    return true;
+}
+
+/// Where facets had more triangles than one.
+bool March::close_all(const Seam& seam, const Outer& outer) {
+    if (!knows_facets_ || !changed_.empty()) {
+        changed_.push_back(at_);
+        return true;
+    }
+    const std::array sides{outer.behind, outer.behind_too, outer.other, outer.entered};
+    improver_->improve_across(sides, true);
+    return seam.is_whole;
 }
 
 /// Leaves the vertex to the improver after all: the way does not go on from it by a plain step.

@@ -22,6 +22,8 @@ double accurate_doubled_area(Point2 a, Point2 b, Point2 c);
 /// Forward error of the plain determinant relative to the sum of its products' magnitudes:
 /// (3 + 16 u) u with u = 2^-53 (Shewchuk 1997).
 inline constexpr double kOrientationError = 3.3306690738754716e-16;
+/// A plain determinant below this share of that sum may be off by more than 2^-37 of itself.
+inline constexpr double kAreaDoubt = 4.5e-5;  // kOrientationError / 2^-37
 }  // namespace detail
 
 /// Exact orientation. Laws, on all coordinates within the core's range:
@@ -50,8 +52,7 @@ inline double doubled_area(Point2 a, Point2 b, Point2 c) {
     const double left = (a.x - c.x) * (b.y - c.y);
     const double right = (a.y - c.y) * (b.x - c.x);
     const double determinant = left - right;
-    constexpr double kWellAboveError = 4.5e-5;  // kOrientationError / 2^-37
-    if (std::fabs(determinant) > kWellAboveError * (std::fabs(left) + std::fabs(right)))
+    if (std::fabs(determinant) > detail::kAreaDoubt * (std::fabs(left) + std::fabs(right)))
         return determinant;
     return detail::accurate_doubled_area(a, b, c);
 }

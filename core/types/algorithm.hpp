@@ -9,6 +9,6 @@ namespace tinsmith::core {
 /// mesh may give other bytes than before, and only then. Who keeps operations to do them again
 /// later keeps the number with them. The test of digests names it: a digest that changes asks for
 /// it.
-inline constexpr std::uint32_t kAlgorithm = 1;
+inline constexpr std::uint32_t kAlgorithm = 2;
 
 }  // namespace tinsmith::core

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/integrate/improve.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "core/mesh/walk.hpp"
 #include "tests/unit/core/fixtures.hpp"
 
 namespace tinsmith {
@@ -51,8 +54,9 @@ struct Findings {
 };
 
 /// Delaunay's local condition, in space, on every edge that may be swapped: with constraints, it
-/// holds on all of them exactly for the constrained Delaunay triangulation.
-Findings look_at(const Tin& tin) {
+/// holds on all of them exactly for the constrained Delaunay triangulation. Edges of which neither
+/// end is `first_vertex` or a later one are passed over.
+Findings look_at(const Tin& tin, std::uint32_t first_vertex = 0) {
     Findings found;
     for (std::uint32_t t = 0; t < tin.triangle_count(); ++t) {
         for (unsigned i = 0; i < 3; ++i) {
@@ -60,6 +64,8 @@ Findings look_at(const Tin& tin) {
             if (tin.is_fixed(side) || tin.separates_facets(side)) continue;
             const Side across = tin.twin(side);
             if (across < side) continue;
+            if (std::max(tin.origin(side).value, tin.destination(side).value) < first_vertex)
+                continue;
             ++found.edges;
             const Point3 a = tin.vertex(tin.origin(side)).point();
             const Point3 b = tin.vertex(tin.destination(side)).point();
@@ -145,6 +151,58 @@ TEST(Improve, HoldsInEveryFacetThatARingCrosses) {
     const Findings found = look_at(tin);
     EXPECT_GT(found.edges, 50);
     EXPECT_EQ(found.worse, 0);
+}
+
+TEST(Improve, AtOnceAroundEachVertexOfAFacetThatIsKnown) {
+    for (const double slope : {0.0, 2.0}) {
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> number(1.0, 49.0);
+        Tin tin = built(sloping(slope));
+        Surgery surgery(tin);
+        Improver improver(surgery);
+        for (int i = 0; i < 300; ++i) {
+            const Point2 p{number(random), number(random)};
+            const Location location = locate(tin, p, {0});
+            ASSERT_EQ(location.kind, Location::Kind::InTriangle);
+            const TriangleId t = location.side.triangle();
+            const TriangleId next{static_cast<std::uint32_t>(tin.triangle_count())};
+            surgery.split_triangle(t, {p.x, p.y, 0.7 * slope * (p.x + p.y)});
+            const std::array outer{Side{t, 0}, Side{next, 0}, Side{{next.value + 1}, 0}};
+            improver.improve_across(outer, true);
+            ASSERT_EQ(look_at(tin).worse, 0) << "slope " << slope << ", vertex " << i;
+        }
+        EXPECT_GT(improver.edges_swapped(), 500u);
+    }
+}
+
+TEST(Improve, HoldsAroundAShortLineInAFacetThatWasNotImproved) {
+    std::mt19937_64 random(6);
+    IntegrateOptions options;
+    options.improve = Improve::None;
+    Tin tin = built(sloping(1.0));
+    ASSERT_TRUE(integrate(tin, std::vector{random_points(random, 100)}, options));
+    const auto first = static_cast<std::uint32_t>(tin.vertex_count());
+    Shape shape = test::line({});
+    for (int i = 0; i < 60; ++i)
+        shape.paths[0].points.push_back({10.0 + i * 0.5, 20.0 + 3.0 * std::sin(i * 0.4)});
+    ASSERT_EQ(integrate_checked(tin, {shape}).broken, "");
+    const Findings found = look_at(tin, first);
+    EXPECT_GT(found.edges, 60);
+    EXPECT_EQ(found.worse, 0);
+    EXPECT_GT(look_at(tin).worse, 0);  // far from it all is as it was
+}
+
+TEST(Improve, HoldsAlongAnArcOfManyVerticesInOneFacet) {
+    Tin tin = built(sloping(0.0));
+    Shape shape = test::ring({});
+    for (int i = 0; i < 700; ++i)
+        shape.paths[0].points.push_back({25.0 + 20.0 * std::cos(i * 0.0089759790102565521),
+                                         25.0 + 20.0 * std::sin(i * 0.0089759790102565521)});
+    const auto outcome = integrate_checked(tin, {shape});
+    ASSERT_EQ(outcome.broken, "");
+    EXPECT_EQ(look_at(tin).worse, 0);
+    // One after the other they would turn 64 each.
+    EXPECT_LT(outcome.shape().edges_swapped, 40u * 700u);
 }
 
 TEST(Improve, LeavesWhatTheMarchMadeWhenAskedTo) {
