@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/side_by_side.hpp"
 #include "core/mesh/delaunay.hpp"
 
 namespace tinsmith::api {
@@ -51,10 +52,11 @@ std::vector<std::uint32_t> names_of(std::span<const core::Point3> vertices,
 
 Parsed<Terrain> triangulated(Terrain terrain, const ReadLimits& limits) {
     if (!terrain.points) return terrain;
-    std::function<bool(double)> progress;
+    core::DelaunayOptions options;
     if (limits.progress)
-        progress = [&limits](double share) { return limits.progress(0.5 + 0.5 * share); };
-    auto mesh = core::delaunay(terrain.mesh.vertices, progress);
+        options.progress = [&limits](double share) { return limits.progress(0.5 + 0.5 * share); };
+    options.executor = side_by_side;
+    auto mesh = core::delaunay(terrain.mesh.vertices, options);
     if (!mesh) return refusal(mesh.errors(), limits, *terrain.points);
     if (mesh->triangles.size() > limits.max_triangles) {
         return {

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/mesh/delaunay_join.hpp"
 #include "core/mesh/growing_delaunay.hpp"
-#include "core/mesh/hilbert_order.hpp"
+#include "core/mesh/insertion_order.hpp"
 #include "core/predicates/orientation.hpp"
 #include "core/types/ids.hpp"
 #include "core/types/range.hpp"
@@ -23,27 +25,52 @@ namespace {
 /// 2 n triangles, ghosts among them, are numbered as sides are.
 constexpr std::size_t kMostPoints = kMaxTriangles / 2;
 constexpr std::size_t kTellEvery = 16384;
+constexpr std::size_t kMostSteps = 32;
+
+/// The points of one triangulation, by their places in the order of insertion.
+struct Part {
+    std::size_t begin;
+    std::size_t end;
+    std::size_t size() const { return end - begin; }
+};
 
 class Triangulator {
   public:
-    Triangulator(std::span<const Point3> points, const std::function<bool(double)>& progress)
-        : points_(points), progress_(progress) {}
+    Triangulator(std::span<const Point3> points, const DelaunayOptions& options)
+        : points_(points), options_(options) {}
 
     Result<MeshData> run() {
         check_coordinates();
         if (!errors_.empty()) return std::move(errors_);
         if (!tell(0.0)) return cancelled();
-        order_ = hilbert_order(points_);
-        leave_out_repeated();
+        const bool by_halves = points_.size() >= options_.least_to_part;
+        order_ = insertion_order(points_, by_halves, options_.executor);
+        name_differing();
         if (!errors_.empty()) return std::move(errors_);
         if (!tell(0.1)) return cancelled();
-        draw_lots();
-        if (!begin_with_a_triangle()) return std::move(errors_);
-        return triangulate();
+        const std::size_t count = order_.points.size(), middle = order_.middle;
+        plan_.resize(count);
+        triangles_ = std::make_unique_for_overwrite<GrowingDelaunay::Triangle[]>(2 * count);
+        if (by_halves) {
+            const Outcome halves = triangulate(std::array{Part{0, middle}, Part{middle, count}});
+            if (halves == Outcome::Cancelled) return cancelled();
+            if (halves == Outcome::Done && join_halves()) return result();
+        }
+        switch (triangulate(std::array{Part{0, count}})) {
+            case Outcome::Cancelled:
+                return cancelled();
+            case Outcome::SpansNone:
+                return Error{no_triangle()};
+            case Outcome::Done:
+                break;
+        }
+        return result();
     }
 
   private:
-    bool tell(double share) const { return !progress_ || progress_(share); }
+    enum class Outcome { Done, Cancelled, SpansNone };
+
+    bool tell(double share) const { return !options_.progress || options_.progress(share); }
     static Error cancelled() { return {ErrorCode::Cancelled, "the caller stopped the work", {}}; }
 
     void fault(ErrorCode code, std::size_t point, const std::string& what) {
@@ -55,16 +82,20 @@ class Triangulator {
     }
 
     void check_coordinates();
-    void leave_out_repeated();
-    void draw_lots();
-    bool begin_with_a_triangle();
-    Result<MeshData> triangulate();
-    MeshData result(const GrowingDelaunay& made);
+    void name_differing();
+    bool begin_with_a_triangle(Part part);
+    Error no_triangle() const;
+    Outcome triangulate(std::span<const Part> parts);
+    bool join_halves();
+    void leave_out_repeated(std::vector<Point3>& vertices);
+    Result<MeshData> result();
 
     std::span<const Point3> points_;
-    const std::function<bool(double)>& progress_;
-    std::vector<std::uint32_t> order_;  ///< of insertion: indices of points
-    std::vector<bool> left_out_;        ///< by point; empty: none is
+    const DelaunayOptions& options_;
+    InsertionOrder order_;
+    /// Positions side by side in the order in which they come: neighbours share cache lines.
+    std::vector<Point2> plan_;
+    std::unique_ptr<GrowingDelaunay::Triangle[]> triangles_;
     Errors errors_;
 };
 
@@ -89,126 +120,142 @@ void Triangulator::check_coordinates() {
     }
 }
 
-/// Points of one position stand side by side, the first of them by index first.
-void Triangulator::leave_out_repeated() {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> differ;  // later point, first point
-    std::size_t kept = 0;
-    for (const std::uint32_t i : order_) {
-        if (kept == 0 || points_[order_[kept - 1]].plan() != points_[i].plan()) {
-            order_[kept++] = i;
-            continue;
-        }
-        const std::uint32_t first = order_[kept - 1];
-        if (points_[first].z != points_[i].z) differ.emplace_back(i, first);
-        if (left_out_.empty()) left_out_.assign(points_.size(), false);
-        left_out_[i] = true;
-    }
-    order_.resize(kept);
-    std::sort(differ.begin(), differ.end());
+void Triangulator::name_differing() {
+    std::vector<Repeated> differ;
+    for (const Repeated& one : order_.repeated)
+        if (points_[one.first].z != points_[one.later].z) differ.push_back(one);
     if (differ.size() > kMaxFaults) differ.resize(kMaxFaults);
-    for (const auto& [later, first] : differ) {
-        fault(ErrorCode::ElevationTwice, later,
-              "is at the position of point " + std::to_string(first) +
+    for (const Repeated& one : differ) {
+        fault(ErrorCode::ElevationTwice, one.later,
+              "is at the position of point " + std::to_string(one.first) +
                   " with another elevation; keep one of them");
-        errors_.back().place.earlier = first;
+        errors_.back().place.earlier = one.first;
     }
-}
-
-/// Rounds of growing numbers of points, each spread over all of the plan and in the curve's order:
-/// then no order of the input makes insertions dear (Amenta, Choi, Rote 2003). Lots are drawn by
-/// the points' indices.
-void Triangulator::draw_lots() {
-    constexpr unsigned kRounds = 8;
-    const auto round_of = [](std::uint32_t i) {
-        const std::uint64_t lot = (std::uint64_t{i} + 1) * 0x9e3779b97f4a7c15ULL;
-        const std::uint64_t mixed = (lot ^ lot >> 29) * 0xbf58476d1ce4e5b9ULL >> 32;
-        unsigned round = kRounds - 1;
-        for (std::uint64_t bits = mixed; round > 0 && (bits & 15U) == 0; bits >>= 4)
-            --round;
-        return round;
-    };
-    std::array<std::size_t, kRounds + 1> start{};
-    for (const std::uint32_t i : order_)
-        ++start[round_of(i) + 1];
-    for (unsigned round = 0; round < kRounds; ++round)
-        start[round + 1] += start[round];
-    std::vector<std::uint32_t> by_round(order_.size());
-    for (const std::uint32_t i : order_)
-        by_round[start[round_of(i)]++] = i;
-    order_ = std::move(by_round);
 }
 
 /// Brings a point off the line of the first two to the third place.
-bool Triangulator::begin_with_a_triangle() {
-    const auto plan = [this](std::size_t k) { return points_[order_[k]].plan(); };
-    if (order_.size() < 3) {
-        errors_.push_back({ErrorCode::TooFewPoints,
-                           "there are " + std::to_string(order_.size()) +
-                               " distinct positions; a triangle needs three",
-                           {}});
-        return false;
-    }
-    std::size_t third = 2;
-    while (third < order_.size() &&
-           orientation(plan(0), plan(1), plan(third)) == Orientation::Collinear)
+bool Triangulator::begin_with_a_triangle(Part part) {
+    const auto plan = [this](std::size_t k) { return points_[order_.points[k]].plan(); };
+    std::size_t third = part.begin + 2;
+    while (third < part.end && orientation(plan(part.begin), plan(part.begin + 1), plan(third)) ==
+                                   Orientation::Collinear)
         ++third;
-    if (third == order_.size()) {
-        errors_.push_back({ErrorCode::PointsCollinear,
-                           "all points are on one line in plan; no triangle has an area",
-                           {}});
-        return false;
-    }
-    std::rotate(order_.begin() + 2, order_.begin() + static_cast<std::ptrdiff_t>(third),
-                order_.begin() + static_cast<std::ptrdiff_t>(third) + 1);
+    if (third >= part.end) return false;
+    const auto at = order_.points.begin() + static_cast<std::ptrdiff_t>(part.begin) + 2;
+    std::rotate(at, order_.points.begin() + static_cast<std::ptrdiff_t>(third),
+                order_.points.begin() + static_cast<std::ptrdiff_t>(third) + 1);
     return true;
 }
 
-Result<MeshData> Triangulator::triangulate() {
-    // Side by side in the order in which they come: neighbours share cache lines.
-    std::vector<Point2> plan(order_.size());
-    for (std::size_t k = 0; k < plan.size(); ++k)
-        plan[k] = points_[order_[k]].plan();
-    GrowingDelaunay made(plan);
-    for (std::size_t k = 3; k < plan.size(); ++k) {
-        made.insert(static_cast<std::uint32_t>(k));
-        if (k % kTellEvery == 0 &&
-            !tell(0.1 + 0.8 * static_cast<double>(k) / static_cast<double>(plan.size())))
-            return cancelled();
-    }
-    if (!tell(0.9)) return cancelled();
-    return result(made);
+Error Triangulator::no_triangle() const {
+    if (order_.points.size() < 3)
+        return {ErrorCode::TooFewPoints,
+                "there are " + std::to_string(order_.points.size()) +
+                    " distinct positions; a triangle needs three",
+                {}};
+    return {ErrorCode::PointsCollinear,
+            "all points are on one line in plan; no triangle has an area",
+            {}};
 }
 
-MeshData Triangulator::result(const GrowingDelaunay& made) {
+/// Each part by itself; the triangles of one begin where those of the other end.
+Triangulator::Outcome Triangulator::triangulate(std::span<const Part> parts) {
+    std::vector<Job> jobs;
+    std::array<bool, 2> spans{};
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        jobs.emplace_back([&, i] {
+            const Part part = parts[i];
+            draw_lots(std::span(order_.points).subspan(part.begin, part.size()));
+            spans[i] = begin_with_a_triangle(part);
+            for (std::size_t k = part.begin; k < part.end; ++k)
+                plan_[k] = points_[order_.points[k]].plan();
+        });
+    options_.executor(jobs);
+    std::vector<GrowingDelaunay> made;
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (!spans[i]) return Outcome::SpansNone;
+        made.emplace_back(plan_, triangles_.get(),
+                          GrowingDelaunay::Share{parts[i].begin,
+                                                 parts[i].begin == 0 ? 0 : 2 * parts[i].begin - 2});
+        longest = std::max(longest, parts[i].size());
+    }
+    const std::size_t step = std::max(kTellEvery, longest / kMostSteps);
+    for (std::size_t done = 3; done < longest; done += step) {
+        jobs.clear();
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            jobs.emplace_back([&, i] {
+                const std::size_t end = std::min(parts[i].size(), done + step);
+                for (std::size_t k = done; k < end; ++k)
+                    made[i].insert(static_cast<std::uint32_t>(parts[i].begin + k));
+            });
+        options_.executor(jobs);
+        if (!tell(0.1 + 0.8 * static_cast<double>(done) / static_cast<double>(longest)))
+            return Outcome::Cancelled;
+    }
+    return tell(0.9) ? Outcome::Done : Outcome::Cancelled;
+}
+
+bool Triangulator::join_halves() {
+    const std::size_t count = plan_.size();
+    const std::span triangles(triangles_.get(), 2 * count - 2);
+    return join({plan_, triangles, 2 * order_.middle - 2, order_.axis}, 2 * count);
+}
+
+/// The vertices, and by these the order.
+void Triangulator::leave_out_repeated(std::vector<Point3>& vertices) {
+    vertices.reserve(order_.points.size());
+    std::vector<std::uint32_t> slot(points_.size());
+    auto repeated = order_.repeated.begin();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        slot[i] = static_cast<std::uint32_t>(vertices.size());
+        if (repeated != order_.repeated.end() && repeated->later == i)
+            ++repeated;
+        else
+            vertices.push_back(points_[i]);
+    }
+    for (std::uint32_t& i : order_.points)
+        i = slot[i];
+}
+
+Result<MeshData> Triangulator::result() {
     MeshData mesh;
-    mesh.vertices.reserve(order_.size());
-    if (left_out_.empty()) {
+    if (order_.repeated.empty()) {
         mesh.vertices.assign(points_.begin(), points_.end());
     } else {
-        std::vector<std::uint32_t> slot(points_.size());
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            slot[i] = static_cast<std::uint32_t>(mesh.vertices.size());
-            if (!left_out_[i]) mesh.vertices.push_back(points_[i]);
-        }
-        for (std::uint32_t& i : order_)
-            i = slot[i];
+        leave_out_repeated(mesh.vertices);
     }
-    std::size_t ghosts = 0;
-    for (const GrowingDelaunay::Triangle& t : made.triangles())
-        ghosts += t.is_ghost() ? 1U : 0U;
-    mesh.triangles.reserve(made.triangles().size() - ghosts);
-    for (const GrowingDelaunay::Triangle& t : made.triangles())
-        if (!t.is_ghost())
-            mesh.triangles.push_back(
-                {order_[t.vertices[0]], order_[t.vertices[1]], order_[t.vertices[2]]});
+    // In parts as well: how many triangles of each are no ghosts, and then these.
+    const std::size_t slots = 2 * plan_.size() - 2;
+    std::array<std::size_t, 3> start{};
+    const auto each_half = [&](const auto& visit) {
+        const std::array<Job, 2> jobs{[&] { visit(0); }, [&] { visit(1); }};
+        options_.executor(jobs);
+    };
+    const auto half = [&](std::size_t i) {
+        const std::size_t begin = i * (slots / 2);
+        return std::span(triangles_.get() + begin, i == 0 ? slots / 2 : slots - begin);
+    };
+    each_half([&](std::size_t i) {
+        for (const GrowingDelaunay::Triangle& t : half(i))
+            start[i + 1] += t.is_ghost() ? 0U : 1U;
+    });
+    start[2] += start[1];
+    mesh.triangles.resize(start[2]);
+    each_half([&](std::size_t i) {
+        auto out = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(start[i]);
+        for (const GrowingDelaunay::Triangle& t : half(i))
+            if (!t.is_ghost())
+                *out++ = {order_.points[t.vertices[0]], order_.points[t.vertices[1]],
+                          order_.points[t.vertices[2]]};
+    });
     return mesh;
 }
 
 }  // namespace
 
-Result<MeshData> delaunay(std::span<const Point3> points,
-                          const std::function<bool(double)>& progress) {
-    return Triangulator(points, progress).run();
+Result<MeshData> delaunay(std::span<const Point3> points, const DelaunayOptions& options) {
+    return Triangulator(points, options).run();
 }
 
 }  // namespace tinsmith::core

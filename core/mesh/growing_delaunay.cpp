@@ -29,17 +29,25 @@ bool is_right(Point2 a, Point2 b, Point2 p) {
 
 }  // namespace
 
-/// The first triangle a, b, c is 0; its ghosts are 1 across a-b, 2 across b-c, 3 across c-a.
-GrowingDelaunay::GrowingDelaunay(std::span<const Point2> points)
+/// The first triangle a, b, c has the first slot; its ghosts the next: across a-b, b-c, c-a.
+GrowingDelaunay::GrowingDelaunay(std::span<const Point2> points, Triangle* triangles, Share share)
     : points_(points),
-      triangles_(std::make_unique_for_overwrite<Triangle[]>(2 * points.size())),
-      count_(4) {
-    const bool left = is_left(points[0], points[1], points[2]);
-    const std::uint32_t a = 0, b = left ? 1 : 2, c = left ? 2 : 1;
-    triangles_[0] = {{a, b, c, 0}, {4 * 1, 4 * 2, 4 * 3, 0}};
-    triangles_[1] = {{b, a, kGhost, 0}, {4 * 0 + 0, 4 * 3 + 2, 4 * 2 + 1, 0}};
-    triangles_[2] = {{c, b, kGhost, 0}, {4 * 0 + 1, 4 * 1 + 2, 4 * 3 + 1, 0}};
-    triangles_[3] = {{a, c, kGhost, 0}, {4 * 0 + 2, 4 * 2 + 2, 4 * 1 + 1, 0}};
+      triangles_(triangles),
+      end_(share.first_triangle + 4),
+      last_(static_cast<std::uint32_t>(share.first_triangle)) {
+    constexpr std::size_t kRoom = 128;  // more than nearly all insertions need
+    stack_.reserve(kRoom);
+    hole_.reserve(kRoom);
+    rim_.reserve(kRoom);
+    const auto a = static_cast<std::uint32_t>(share.first_point);
+    const bool left = is_left(points[a], points[a + 1], points[a + 2]);
+    const std::uint32_t b = a + (left ? 1 : 2), c = a + (left ? 2 : 1);
+    const std::uint32_t t = last_;
+    const auto side = [t](std::uint32_t triangle, unsigned i) { return 4 * (t + triangle) + i; };
+    triangles_[t] = {{a, b, c, 0}, {side(1, 0), side(2, 0), side(3, 0), 0}};
+    triangles_[t + 1] = {{b, a, kGhost, 0}, {side(0, 0), side(3, 2), side(2, 1), 0}};
+    triangles_[t + 2] = {{c, b, kGhost, 0}, {side(0, 1), side(1, 2), side(3, 1), 0}};
+    triangles_[t + 3] = {{a, c, kGhost, 0}, {side(0, 2), side(2, 2), side(1, 1), 0}};
 }
 
 void GrowingDelaunay::insert(std::uint32_t point) {
@@ -127,9 +135,9 @@ void GrowingDelaunay::dig(std::uint32_t triangle, Point2 p) {
 ///          . k /
 ///          point
 void GrowingDelaunay::fill(std::uint32_t point) {
-    hole_.push_back(static_cast<std::uint32_t>(count_));
-    hole_.push_back(static_cast<std::uint32_t>(count_ + 1));
-    count_ += 2;
+    hole_.push_back(static_cast<std::uint32_t>(end_));
+    hole_.push_back(static_cast<std::uint32_t>(end_ + 1));
+    end_ += 2;
     const std::size_t sides = rim_.size();
     std::uint32_t before = hole_[sides - 1];
     for (std::size_t k = 0; k < sides; ++k) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,7 +18,8 @@ namespace tinsmith::core {
 /// (u, v, kGhost) with what is outside on the left of u -> v; no vertex is inside the circle of a
 /// triangle, exactly. Of four points on a circle that diagonal stays that was there first.
 /// Cost of an insertion: the triangles on the way from the last one, and those it replaces.
-class GrowingDelaunay {
+/// Several may grow at the same time: none shares a cache line with another.
+class alignas(64) GrowingDelaunay {
   public:
     static constexpr std::uint32_t kGhost = UINT32_MAX;
 
@@ -34,15 +34,20 @@ class GrowingDelaunay {
         }
     };
 
-    /// With the first three points. Requires: they are not on one line; points are distinct, live
-    /// as long as this, and are fewer than 2^29.
-    explicit GrowingDelaunay(std::span<const Point2> points);
+    /// Which points and which slots for triangles are its own.
+    struct Share {
+        std::size_t first_point;
+        std::size_t first_triangle;
+    };
 
-    /// Requires: `point` is an index into the points, was not inserted yet and is not one of the
-    /// first three.
+    /// With its first three points. It needs two slots less than twice as many as its points.
+    /// Requires: the three are not on one line; points are distinct and fewer than 2^29; points and
+    /// slots live as long as this.
+    GrowingDelaunay(std::span<const Point2> points, Triangle* triangles, Share share);
+
+    /// Requires: `point` is an index into the points, one of its own that was not inserted yet and
+    /// is not one of its first three.
     void insert(std::uint32_t point);
-
-    std::span<const Triangle> triangles() const { return {triangles_.get(), count_}; }
 
   private:
     /// A side of the hole that a new point makes, with the triangle outside of it.
@@ -57,9 +62,9 @@ class GrowingDelaunay {
     void fill(std::uint32_t point);
 
     std::span<const Point2> points_;
-    std::unique_ptr<Triangle[]> triangles_;
-    std::size_t count_ = 0;
-    std::uint32_t last_ = 0;  ///< a triangle with the newest point, no ghost
+    Triangle* triangles_;
+    std::size_t end_;     ///< the first slot that is free
+    std::uint32_t last_;  ///< a triangle with the newest point, no ghost
     std::vector<std::uint32_t> stack_;
     std::vector<std::uint32_t> hole_;  ///< the triangles that go
     std::vector<Rim> rim_;

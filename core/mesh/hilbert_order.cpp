@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 namespace tinsmith::core {
@@ -76,10 +77,8 @@ constexpr std::uint32_t place_of(Key key) {
 
 class Sorter {
   public:
-    explicit Sorter(std::span<const Point3> points) : points_(points), keys_(points.size()) {
-        for (std::size_t i = 0; i < keys_.size(); ++i)
-            keys_[i] = i;
-    }
+    Sorter(std::span<const Point3> points, std::vector<Key> indices)
+        : points_(points), keys_(std::move(indices)) {}
 
     std::vector<std::uint32_t> order() {
         pending_.emplace_back(0, keys_.size());
@@ -187,8 +186,15 @@ class Sorter {
 
 }  // namespace
 
+std::vector<std::uint32_t> hilbert_order(std::span<const Point3> points,
+                                         std::span<const std::uint32_t> those) {
+    return Sorter(points, {those.begin(), those.end()}).order();
+}
+
 std::vector<std::uint32_t> hilbert_order(std::span<const Point3> points) {
-    return Sorter(points).order();
+    std::vector<Key> all(points.size());
+    std::iota(all.begin(), all.end(), Key{0});
+    return Sorter(points, std::move(all)).order();
 }
 
 }  // namespace tinsmith::core

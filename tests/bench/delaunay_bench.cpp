@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The core's Delaunay triangulation against CGAL's with its spatial sort, on the same points, in
-// one run: README.md in this folder says what is compared and what came out. One thread.
+// one run: README.md in this folder says what is compared and what came out. One thread by its own
+// clock, and Tinsmith on two processors by the wall's.
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 
 #include "core/mesh/delaunay.hpp"
 #include "tests/bench/timing.hpp"
+#include "tests/bench/two_processors.hpp"
 #include "tests/cgal/bundled_data.hpp"
 #include "tests/cgal/delaunay_mesh.hpp"
 #include "tests/support/point_clouds.hpp"
@@ -26,10 +28,20 @@ constexpr const char* kUsage =
 
 using Points = std::vector<core::Point3>;
 
-std::size_t count_ours(const Points& points) {
-    const auto mesh = core::delaunay(points);
+std::size_t count_by(const core::Executor& executor, const Points& points) {
+    core::DelaunayOptions options;
+    options.executor = executor;
+    const auto mesh = core::delaunay(points, options);
     if (!mesh) throw std::runtime_error("the points are refused: " + mesh.errors()[0].detail);
     return mesh->triangles.size();
+}
+
+std::size_t count_ours(const Points& points) {
+    return count_by(core::one_after_another, points);
+}
+
+std::size_t count_on_two(const Points& points) {
+    return count_by(on_two_processors, points);
 }
 
 struct Timed {
@@ -37,31 +49,34 @@ struct Timed {
     std::size_t triangles = 0;
 };
 
-Timed timed(std::size_t (*count)(const Points&), const Points& points) {
-    const double start = now_ms();
+Timed timed(std::size_t (*count)(const Points&), const Points& points, double (*clock)() = now_ms) {
+    const double start = clock();
     const std::size_t triangles = count(points);
-    return {now_ms() - start, triangles};
+    return {clock() - start, triangles};
 }
 
-/// The three in turn, each run after a first one that warms up.
+/// All in turn, each run after a first one that warms up.
 void compare(const std::string& name, const Points& points, int runs) {
-    std::vector<double> ours, bare, indexed;
+    std::vector<double> ours, shared, bare, indexed;
     for (int run = 0; run <= runs; ++run) {
         const Timed our = timed(count_ours, points);
+        const Timed two = timed(count_on_two, points, wall_ms);
         const Timed plain = timed(cgal::delaunay_count, points);
         const Timed with_indices = timed(cgal::delaunay_count_with_indices, points);
-        if (our.triangles != plain.triangles || our.triangles != with_indices.triangles)
+        if (our.triangles != plain.triangles || two.triangles != plain.triangles ||
+            our.triangles != with_indices.triangles)
             throw std::runtime_error(name + ": " + std::to_string(our.triangles) +
                                      " triangles, CGAL " + std::to_string(plain.triangles));
         if (run == 0) continue;
         ours.push_back(our.ms);
+        shared.push_back(two.ms);
         bare.push_back(plain.ms);
         indexed.push_back(with_indices.ms);
     }
-    std::printf("| %s | %zu | %.1f | %.1f | %.1f | %.0f | %s | %s |\n", name.c_str(), points.size(),
-                median(ours), median(bare), median(indexed),
+    std::printf("| %s | %zu | %.1f | %.1f | %.1f | %.1f | %.0f | %s | %s | %s |\n", name.c_str(),
+                points.size(), median(ours), median(shared), median(bare), median(indexed),
                 median(ours) * 1e6 / static_cast<double>(points.size()), ratio(bare, ours).c_str(),
-                ratio(indexed, ours).c_str());
+                ratio(bare, shared).c_str(), ratio(indexed, ours).c_str());
     std::fflush(stdout);
 }
 
@@ -94,8 +109,9 @@ int run(const std::string& part, int runs) {
         return 2;
     }
     std::printf(
-        "| points | number | Tinsmith ms | CGAL ms | CGAL with indices ms | Tinsmith ns/point | "
-        "CGAL / Tinsmith | with indices / Tinsmith |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+        "| points | number | Tinsmith ms | on two ms | CGAL ms | CGAL with indices ms | Tinsmith "
+        "ns/point | CGAL / Tinsmith | CGAL / on two | with indices / Tinsmith |\n"
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
     if (part == "bundled") {
         const Points terrain = cgal::bundled_terrain().vertices;
         compare("bundled terrain", terrain, runs);

@@ -6,6 +6,9 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <span>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +32,8 @@ std::set<std::array<std::uint32_t, 3>> turned(
     }
     return set;
 }
+
+const DelaunayOptions kByHalves{{}, one_after_another, 2};
 
 /// Everything that the header says of a mesh: built, whole, convex, and no vertex of a neighbour in
 /// any circle, by the verifier's rational numbers.
@@ -69,16 +74,20 @@ TEST(Delaunay, HoldsItsLawsOnCloudsOfEverySort) {
         for (const std::size_t size : {10U, 100U, 3000U}) {
             SCOPED_TRACE(cloud.name + " of " + std::to_string(size));
             const Points points = cloud.make(size, size);
-            const auto mesh = delaunay(points);
+            const auto mesh = delaunay(points), joined = delaunay(points, kByHalves);
             ASSERT_TRUE(mesh.ok()) << mesh.errors()[0].detail;
             ASSERT_NO_FATAL_FAILURE(expect_delaunay(*mesh));
+            ASSERT_TRUE(joined.ok()) << joined.errors()[0].detail;
+            ASSERT_NO_FATAL_FAILURE(expect_delaunay(*joined));
+            if (cloud.has_ties) continue;
+            EXPECT_EQ(turned(mesh->triangles), turned(joined->triangles));
         }
     }
 }
 
 TEST(Delaunay, IsThatOfSmallSetsHoweverTheyLie) {
     // All kinds of ties: few points on a small lattice, against the slow triangulator of the tests.
-    for (std::uint64_t seed = 0; seed < 3'000; ++seed) {
+    for (std::uint64_t seed = 0; seed < 6'000; ++seed) {
         SCOPED_TRACE(seed);
         std::uint64_t state = seed;
         const auto dice = [&state](std::uint64_t count) {
@@ -96,7 +105,7 @@ TEST(Delaunay, IsThatOfSmallSetsHoweverTheyLie) {
         for (const auto& p : lattice)
             points.push_back({double(p.x), double(p.y), 0.0});
         const auto expected = test::delaunay(lattice);
-        const auto mesh = delaunay(points);
+        const auto mesh = delaunay(points, seed % 2 == 0 ? DelaunayOptions{} : kByHalves);
         if (expected.empty()) {
             ASSERT_FALSE(mesh.ok());
             ASSERT_EQ(mesh.errors()[0].code,
@@ -147,6 +156,46 @@ TEST(Delaunay, GivesTheSameBytesEachTime) {
                 sum = (sum ^ v) * 1099511628211ULL;
     }
     EXPECT_EQ(sum, 8425804008198142698U);
+}
+
+TEST(Delaunay, IsTheSameHoweverItsHalvesAreShared) {
+    DelaunayOptions shared = kByHalves;
+    int calls = 0;
+    shared.executor = [&calls](std::span<const Job> jobs) {
+        ++calls;
+        std::vector<std::thread> threads;
+        for (const Job& job : jobs)
+            threads.emplace_back(job);
+        for (std::thread& thread : threads)
+            thread.join();
+    };
+    for (const char* name : {"scattered", "grid", "clustered"}) {
+        const Points points = test::point_cloud(name).make(40'000, 3);
+        const auto alone = delaunay(points, kByHalves), beside = delaunay(points, shared);
+        ASSERT_TRUE(alone.ok() && beside.ok());
+        EXPECT_EQ(alone->triangles, beside->triangles) << name;
+    }
+    EXPECT_GT(calls, 10);
+}
+
+TEST(Delaunay, JoinsHalvesThatHardlyFitEachOther) {
+    // Rows beside the line that parts them, bent to it and from it: the one half's triangles are
+    // nearly all other ones beside the other half.
+    for (const double bend : {-1e-3, 0.0, 1e-3}) {
+        for (const bool is_upright : {true, false}) {
+            Points points;
+            for (int i = 0; i < 400; ++i) {
+                const double y = (i - 200) * 0.01, x = 1.0 + bend * y * y + (i % 3 == 0 ? 1e-6 : 0);
+                for (const double side : {-x - 2.0, x + 2.0})
+                    points.push_back(is_upright ? Point3{side, y, 0} : Point3{y, side, 0});
+            }
+            points.push_back(is_upright ? Point3{-9, 0, 0} : Point3{0, -9, 0});
+            points.push_back(is_upright ? Point3{9, 0, 0} : Point3{0, 9, 0});
+            const auto mesh = delaunay(points, kByHalves);
+            ASSERT_TRUE(mesh.ok());
+            ASSERT_NO_FATAL_FAILURE(expect_delaunay(*mesh)) << bend;
+        }
+    }
 }
 
 TEST(Delaunay, NamesPositionsWithTwoElevations) {
@@ -206,16 +255,19 @@ TEST(Delaunay, RefusesWhatSpansNoTriangle) {
 TEST(Delaunay, TellsItsProgressAndStops) {
     const Points points = test::point_cloud("scattered").make(100'000, 1);
     std::vector<double> told;
-    ASSERT_TRUE(delaunay(points, [&](double share) {
-                    told.push_back(share);
-                    return true;
-                }).ok());
+    DelaunayOptions options;
+    options.progress = [&](double share) {
+        told.push_back(share);
+        return true;
+    };
+    ASSERT_TRUE(delaunay(points, options).ok());
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GE(told.size(), 6U);
     EXPECT_LE(told.back(), 1.0);
     for (std::size_t stop = 0; stop < told.size(); ++stop) {
         std::size_t asked = 0;
-        const auto stopped = delaunay(points, [&](double) { return asked++ != stop; });
+        options.progress = [&](double) { return asked++ != stop; };
+        const auto stopped = delaunay(points, options);
         ASSERT_FALSE(stopped.ok());
         EXPECT_EQ(stopped.errors()[0].code, ErrorCode::Cancelled);
         EXPECT_EQ(asked, stop + 1);
