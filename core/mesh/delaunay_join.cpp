@@ -51,7 +51,6 @@ class Hull {
 struct Tangent {
     std::size_t low;
     std::size_t high;
-    friend bool operator==(const Tangent&, const Tangent&) = default;
 };
 
 //                 upper tangent

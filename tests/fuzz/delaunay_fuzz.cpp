@@ -85,10 +85,14 @@ void check(const core::MeshData& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace tinsmith;
     const std::vector<Point3> points = points_of(data, size);
-    const auto mesh = core::delaunay(points);
-    if (mesh)
-        check(*mesh);
-    else
-        require(!mesh.errors().empty() && mesh.errors().size() <= core::kMaxFaults);
+    core::DelaunayOptions by_halves;
+    by_halves.least_to_part = 2;
+    for (const core::DelaunayOptions& options : {core::DelaunayOptions{}, by_halves}) {
+        const auto mesh = core::delaunay(points, options);
+        if (mesh)
+            check(*mesh);
+        else
+            require(!mesh.errors().empty() && mesh.errors().size() <= core::kMaxFaults);
+    }
     return 0;
 }
