@@ -238,6 +238,9 @@ bool March::cross(Side exit) {
         const Point2 left = tin_.plan(tin_.destination(exit));
         switch (orientation(right, left, end_)) {
             case CounterClockwise:
+                if (needs_swaps && may_land_ && knows_facets_ && improves_at_once() &&
+                    changed_.empty() && lands_in(exit))
+                    return connect(land_beyond(exit));
                 return reach(settle({Location::Kind::InTriangle, exit, {}}, end_), needs_swaps);
             case Collinear:
                 return reach(settle({Location::Kind::OnEdge, exit, {}}, end_), needs_swaps);

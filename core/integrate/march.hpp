@@ -200,6 +200,10 @@ class March {
 
     // landing.cpp
     void land(Side exit);
+    VertexId land_beyond(Side exit);
+    VertexId split_at_end(TriangleId t);
+    void improve_split(TriangleId t);
+    bool improves_at_once() const;
     bool lands_in(Side exit) const;
 
     // connect.cpp
