@@ -39,6 +39,7 @@ constexpr std::array kTable{
     Row{PathTooLong, "path-too-long", "The path is too long", 414},
     Row{TooManyHeaders, "too-many-headers", "The head has too many or too long fields", 431},
     Row{RangeRefused, "range-refused", "The range cannot be served", 416},
+    Row{ExpectationFailed, "expectation-failed", "The expectation cannot be met", 417},
     Row{RequestTimeout, "request-timeout", "The request did not arrive in time", 408},
     Row{NoSuchPath, "no-such-path", "Nothing is at this path", 404},
     Row{NoSuchSession, "no-such-session", "There is no such session", 404},

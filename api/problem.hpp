@@ -28,6 +28,7 @@ enum class ProblemType {
     PathTooLong,
     TooManyHeaders,
     RangeRefused,
+    ExpectationFailed,  ///< Expect
     RequestTimeout,
     NoSuchPath,
     NoSuchSession,

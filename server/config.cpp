@@ -10,6 +10,8 @@
 
 #include "api/terrain_options.hpp"
 #include "server/config_environment.hpp"
+#include "server/config_flags.hpp"
+#include "server/config_quotas.hpp"
 
 namespace tinsmith::server {
 
@@ -64,12 +66,6 @@ constexpr const char* kKeyFooter =
 /// A hundred years: beyond, times are no times any more.
 constexpr std::uint64_t kLongestLife = std::uint64_t{100} * 365 * 24 * 3600;
 
-/// "max_body_bytes" as a flag, "--max-body-bytes".
-std::string flag_of(std::string name) {
-    std::replace(name.begin(), name.end(), '_', '-');
-    return "--" + name;
-}
-
 std::string variable_of(std::string name) {
     std::transform(name.begin(), name.end(), name.begin(), [](char c) {
         return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -85,16 +81,7 @@ CLI::Option* add_setting(CLI::App& app, const std::string& name, T& value,
         ->capture_default_str();
 }
 
-/// The library reads -5 as 2^64 - 5 and lets not-a-number through every range: no limit at all.
-CLI::Validator digit_first() {
-    return {[](std::string& text) {
-                const bool is_digit = !text.empty() && text.front() >= '0' && text.front() <= '9';
-                return is_digit ? std::string() : "\"" + text + "\" does not begin with a digit";
-            },
-            "", "digit_first"};
-}
-
-/// A limit or a quota: where it is kept, and what --help says.
+/// A limit: where it is kept, and what --help says.
 struct NumberFlag {
     const char* name;
     std::size_t* value;
@@ -290,39 +277,6 @@ CLI::App* add_backup(CLI::App& app, BackupConfig& config) {
     add_setting(*backup, "data", config.data, "The folder that the server has")->required();
     backup->add_option("TO", config.to, "The copy")->required();
     return backup;
-}
-
-void add_quotas(CLI::App& app, KeyQuotas& quotas) {
-    struct QuotaFlag {
-        const char* name;
-        std::optional<std::size_t>* value;
-        const char* text;
-        bool is_bytes = false;
-    };
-    const QuotaFlag flags[] = {
-        {"max_sessions", &quotas.max_sessions, "Sessions of the key"},
-        {"max_memory_bytes", &quotas.max_memory_bytes,
-         "Of its sessions, in memory or not (256MB, 1GB)", true},
-        {"max_session_bytes", &quotas.max_session_bytes, "Of each of its sessions", true},
-        {"max_requests", &quotas.max_requests, "Requests of the key at the same time"},
-        {"max_body_bytes", &quotas.max_body_bytes, "Largest request body", true},
-        {"max_vertices", &quotas.max_vertices, "Vertices of a terrain"},
-        {"max_triangles", &quotas.max_triangles, "Triangles of a session"},
-        {"max_polygon_vertices", &quotas.max_polygon_vertices, "Positions in one request"},
-        {"max_crossings", &quotas.max_crossings, "Edges crossed by one request"},
-    };
-    for (const QuotaFlag& flag : flags) {
-        CLI::Option* const option = app.add_option(flag_of(flag.name), *flag.value, flag.text);
-        if (flag.is_bytes) option->transform(CLI::AsSizeValue(false));
-        option->transform(digit_first());
-    }
-    app.add_option("--max-requests-per-second", quotas.max_requests_per_second,
-                   "Requests that it may begin in a second")
-        ->check(digit_first())
-        ->check(CLI::PositiveNumber);
-    app.add_option("--max-edit-seconds", quotas.max_edit_seconds, "Time for one edit")
-        ->check(digit_first())
-        ->check(CLI::PositiveNumber);
 }
 
 CLI::App* add_key(CLI::App& app, KeyConfig& config) {

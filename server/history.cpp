@@ -44,11 +44,17 @@ std::size_t told_bytes_of(const Change& change) noexcept {
 History::History(HistoryLimits limits, std::size_t vertices, std::size_t triangles)
     : limits_(limits) {
     limits_.operations = std::max<std::size_t>(limits_.operations, 1);
+    in_force_ = limits_;
     Change created;
     created.version = 1;
     created.vertices = vertices;
     created.triangles = triangles;
     changes_.push_back(std::move(created));
+}
+
+void History::bound(HistoryLimits limits) noexcept {
+    in_force_.operations = std::clamp<std::size_t>(limits.operations, 1, limits_.operations);
+    in_force_.bytes = std::min(limits.bytes, limits_.bytes);
 }
 
 const Change* History::change_at(std::uint64_t version) const {
@@ -271,14 +277,16 @@ bool History::forget_oldest_lone() noexcept {
 
 /// Ends: each turn an edit or an operation less.
 void History::shrink() noexcept {
-    if (changes_.size() > limits_.operations + 1) drop_oldest_change();
-    while (changes_.size() > 2 && told_bytes_ > limits_.bytes / kToldShare)
+    while (changes_.size() > in_force_.operations + 1)
         drop_oldest_change();
-    if (undoable_.size() > limits_.operations) drop_oldest_undoable();
-    while (applied_.size() > limits_.operations || memory_bytes() > limits_.bytes) {
+    while (changes_.size() > 2 && told_bytes_ > in_force_.bytes / kToldShare)
+        drop_oldest_change();
+    while (undoable_.size() > in_force_.operations)
+        drop_oldest_undoable();
+    while (applied_.size() > in_force_.operations || memory_bytes() > in_force_.bytes) {
         const bool is_needed = !undoable_.empty() && undoable_.back().first <= base();
         // What could be redone stands on the operations that are there now.
-        if (memory_bytes() > limits_.bytes && forget_oldest_lone()) {
+        if (memory_bytes() > in_force_.bytes && forget_oldest_lone()) {
             continue;
         } else if (applied_.size() > 1 && !is_needed && redoable_.empty()) {
             settle_oldest();

@@ -111,6 +111,9 @@ class History {
     /// About what is held beside the mesh.
     std::size_t memory_bytes() const;
 
+    /// From the next change on: its own limits, or these where they are tighter.
+    void bound(HistoryLimits limits) noexcept;
+
     /// Makes room, so that one change with so many new operations takes no memory.
     void prepare(std::size_t added);
     /// A new edit was made: these were run for it, in place of all from its place on.
@@ -164,6 +167,7 @@ class History {
     void shrink() noexcept;
 
     HistoryLimits limits_;
+    HistoryLimits in_force_;  ///< the same, or tighter
     std::vector<Change> changes_;
     std::vector<Settled> settled_;  ///< the base, beside what the session was made of
     std::size_t told_bytes_ = 0;    ///< of all changes

@@ -81,6 +81,21 @@ bool Jobs::is_small_enough(const Request& request) const {
     return bytes_of(request) <= bounds_.bytes;
 }
 
+bool Jobs::is_at_quota(const Asker& asker) {
+    const std::lock_guard lock(mutex_);
+    return has_too_many(asker);
+}
+
+/// Requires: the lock.
+bool Jobs::has_too_many(const Asker& asker) const {
+    const auto most = asker.quotas.max_queued_jobs;
+    if (!most) return false;
+    const auto count = std::count_if(queue_.begin(), queue_.end(), [&asker](const JobPtr& job) {
+        return job->owner == asker.id;
+    });
+    return static_cast<std::size_t>(count) >= *most;
+}
+
 std::optional<api::JobView> Jobs::add(Request request, Task task) {
     const std::lock_guard lock(mutex_);
     drop_old();
@@ -88,7 +103,7 @@ std::optional<api::JobView> Jobs::add(Request request, Task task) {
     // What has ended can make room, but only for what then fits.
     const std::size_t live = jobs_.size() - ended_.size();
     if (shutting_down_ || queue_.size() >= bounds_.queued || live >= bounds_.kept ||
-        live_bytes_ + bytes > bounds_.bytes)
+        live_bytes_ + bytes > bounds_.bytes || has_too_many(request.asker))
         return std::nullopt;
     auto job = std::make_shared<Job>();
     job->view.id = new_id(++count_);

@@ -51,8 +51,8 @@ class Jobs {
     Jobs& operator=(const Jobs&) = delete;
 
     /// Takes a request on; nothing: no room, or the service is stopping; then no answer was dropped
-    /// for it. An exception leaves all as it was. A task that throws is answered 507 without a
-    /// body.
+    /// for it, or its asker has as many waiting as its quota says. An exception leaves all as it
+    /// was. A task that throws is answered 507 without a body.
     std::optional<api::JobView> add(Request request, Task task);
 
     /// To be told the status of the job's answer when it has ended, at once if it has: before
@@ -61,6 +61,8 @@ class Jobs {
     using Heir = std::function<void(int status)>;
     void when_ended(const std::string& id, Heir heir) noexcept;
 
+    /// Whether as many of the asker's jobs wait for a thread as its quota allows.
+    bool is_at_quota(const Asker& asker);
     /// Whether there can ever be room for it.
     bool is_small_enough(const Request& request) const;
 
@@ -113,6 +115,7 @@ class Jobs {
     using JobMap = std::map<std::string, JobPtr>;
 
     static api::JobView view_of(const Job& job);
+    bool has_too_many(const Asker& asker) const;
     /// The end where it is not there for them.
     JobMap::iterator find(const std::string& id, const Asker& asker);
     void start_thread();

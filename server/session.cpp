@@ -179,6 +179,7 @@ core::Result<AppliedPtr> Session::perform(OperationPtr operation, ChangeKind kin
     change.step = Exchange{step.first, {}, step.added};
     change.written.resize(1);
     history_.prepare(1);
+    history_.bound({most_operations_, most_history_bytes_});
     const Stopwatch watch;
     auto applied = run(tin_, made, std::move(operation), limits, polygon_finder());
     if (!applied) return applied;

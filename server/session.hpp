@@ -121,6 +121,13 @@ class Session {
     bool is_lost() const { return is_lost_; }
     SessionCounts counts() const;
 
+    /// What it keeps of its past from its next change on: as its own limits say, or these where
+    /// they are tighter. Takes no lock.
+    void bound_history(HistoryLimits limits) {
+        most_operations_ = limits.operations;
+        most_history_bytes_ = limits.bytes;
+    }
+
     const SessionFacts& facts() const { return facts_; }
     std::string etag(std::uint64_t version) const;
 
@@ -227,6 +234,8 @@ class Session {
     std::shared_ptr<ChangeLog> log_;  ///< null: nothing is kept
     std::string digest_;              ///< running; empty: nobody wants it
     std::atomic<bool> is_lost_{false};
+    std::atomic<std::size_t> most_operations_{SIZE_MAX};
+    std::atomic<std::size_t> most_history_bytes_{SIZE_MAX};
 
     mutable std::mutex view_mutex_;  ///< guards the view; taken last and never held for long
     api::SessionView view_;

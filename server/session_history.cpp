@@ -131,6 +131,7 @@ ChangeOutcome Session::replace(const ChangeRequest& request, const ChangeAsked& 
     const std::uint64_t before = version();
     // Memory first: once the mesh has changed, nothing may fail before it is on record.
     history_.prepare(replacement.wanted.size());
+    history_.bound({most_operations_, most_history_bytes_});
     const auto taken = std::span(history_.applied()).subspan(replacement.first - history_.base());
     Exchange step{replacement.first, {}, replacement.wanted};
     for (const AppliedPtr& old : taken)

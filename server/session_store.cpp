@@ -79,6 +79,7 @@ std::optional<StoreRefusal> SessionStore::refusal_of_quota(const Asker& asker,
 
 std::shared_ptr<Session> SessionStore::find(const std::string& id, const Asker& asker) {
     EntryPtr entry;
+    std::shared_ptr<Session> session;
     {
         const std::shared_lock lock(mutex_);
         const auto found = entries_.find(id);
@@ -86,9 +87,15 @@ std::shared_ptr<Session> SessionStore::find(const std::string& id, const Asker& 
         if (!asker.may_see(found->second->owner)) return nullptr;
         entry = found->second;
         touch(*entry);
-        if (entry->session && !entry->session->is_lost()) return entry->session;
+        if (entry->session && !entry->session->is_lost()) session = entry->session;
     }
-    return load(*entry);
+    if (!session) session = load(*entry);
+    // What nobody made in particular is not one key's to forget.
+    if (session && !asker.id.empty() && asker.id == entry->owner) {
+        const Limits limits = within_quotas(limits_, asker.quotas);
+        session->bound_history({limits.max_history, limits.max_history_bytes});
+    }
+    return session;
 }
 
 bool SessionStore::contains(const std::string& id) const {

@@ -175,6 +175,16 @@ void name_as_points(api::Terrain& terrain, std::vector<std::uint32_t>& vertices)
     }
 }
 
+/// About what triangulating, mending and building take beside what has been read, at most:
+/// measured with bodies of every format (tests/attack/memory_test.cpp).
+std::size_t bytes_to_build(const api::Terrain& terrain) {
+    constexpr std::size_t kOfVertex = 64;
+    constexpr std::size_t kOfTriangle = 48;
+    const std::size_t vertices = terrain.mesh.vertices.size();
+    const std::size_t triangles = terrain.points ? 2 * vertices : terrain.mesh.triangles.size();
+    return kOfVertex * vertices + kOfTriangle * triangles;
+}
+
 /// What the options ask for is mended; then the mesh is built.
 api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
                                  const api::TerrainOptions& options) {
@@ -235,12 +245,14 @@ std::optional<TerrainFormat> terrain_format_named(std::string_view media_type) {
 
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::TerrainOptions& options,
-                                        const api::ReadLimits& limits) {
+                                        const api::ReadLimits& limits, const MayTake& may_take) {
     begin_stage(0.4);
     // Faults of JSON count its bytes from the first, and its reader knows the mark.
     if (format != TerrainFormat::Json) bytes = without_mark(bytes);
     auto terrain = reader_of(format).read(bytes, options, limits);
     if (terrain) terrain = settled(*std::move(terrain), format, options, limits);
+    if (terrain && may_take && !may_take(bytes_to_build(*terrain)))
+        return {api::FaultKind::Stopped, api::reading_stopped()};
     if (terrain) terrain = api::triangulated(*std::move(terrain), limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,10 +31,16 @@ struct LoadedTerrain {
     core::Tin tin;
 };
 
+/// Asked once a terrain has been read, before its mesh is built, whether there is memory for that:
+/// about so many bytes beside what was read, at most.
+using MayTake = std::function<bool(std::size_t bytes)>;
+
 /// Reads, mends where that is asked for, and builds in one go, the same for requests, the demo and
-/// the command line. Faults of the mesh come back in the body's own places.
+/// the command line. Faults of the mesh come back in the body's own places. Where it may not take
+/// the memory it stops.
 api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat format,
                                         const api::TerrainOptions& options,
-                                        const api::ReadLimits& limits);
+                                        const api::ReadLimits& limits,
+                                        const MayTake& may_take = {});
 
 }  // namespace tinsmith::server

@@ -45,11 +45,6 @@ std::optional<Response> Turnstile::admit(Request& request) {
     return std::nullopt;
 }
 
-std::optional<Response> Turnstile::would_refuse(const Request& request) const {
-    if (!is_counted(request) || inside_ < most_) return std::nullopt;
-    return refuse_for_now(request);
-}
-
 Response Turnstile::refuse_for_now(const Request& request) const {
     return refuse(request, api::ProblemType::Busy,
                   "The limit max_requests of " + std::to_string(most_) +

@@ -23,8 +23,6 @@ class Turnstile {
 
     /// What is answered instead; nothing: go on, the request holds its pass.
     std::optional<Response> admit(Request& request);
-    /// The same, and counts nothing: for a client that wants to know before it sends its body.
-    std::optional<Response> would_refuse(const Request& request) const;
 
   private:
     class Pass;

@@ -238,10 +238,9 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     const Router page_router(make_page_routes(services), &services.metrics);
     HttpServer server(
         config.http,
-        {[&gate, &turnstile](Request& head, bool comes_again) {
-             auto refusal = comes_again ? gate.would_refuse(head) : gate.admit(head);
-             if (refusal) return refusal;
-             return comes_again ? turnstile.would_refuse(head) : turnstile.admit(head);
+        {[&gate, &turnstile](Request& head) {
+             auto refusal = gate.admit(head);
+             return refusal ? refusal : turnstile.admit(head);
          },
          [&](const Request& request) {
              const Metrics::InFlight one(services.metrics);

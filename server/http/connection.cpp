@@ -119,6 +119,11 @@ bool Connection::wait_for(short events, milliseconds longest) const {
     }
 }
 
+bool Connection::has_more() const {
+    char byte = 0;
+    return ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+}
+
 bool Connection::wait_readable(milliseconds longest) const {
     return wait_for(POLLIN, longest);
 }

@@ -49,6 +49,8 @@ class Connection {
     /// head are used up (RFC 9112 2.2).
     std::size_t size_of_head();
 
+    /// Whether bytes are there that have not been read. Reads none.
+    bool has_more() const;
     /// Waits for bytes or the end of the connection. False: neither came.
     bool wait_readable(std::chrono::milliseconds longest) const;
 

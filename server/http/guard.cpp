@@ -30,6 +30,25 @@ std::optional<std::uint64_t> parse_length(std::string_view text) {
     return length;
 }
 
+/// In lower case.
+std::string expectations(const Request& request) {
+    return api::lower_case(combined_field(request, "expect").value_or(""));
+}
+
+constexpr std::string_view kInvitation = "100-continue";
+
+std::optional<Problem> check_expectations(const Request& request) {
+    const std::string all = expectations(request);
+    for (std::string_view rest = all; !rest.empty();) {
+        const std::string_view one = api::take_part(rest, ',');
+        if (one.empty() || one == kInvitation) continue;
+        return Problem{ProblemType::ExpectationFailed,
+                       "The only expectation that is known here is 100-continue.",
+                       {}};
+    }
+    return std::nullopt;
+}
+
 std::optional<Problem> check_length(const Request& request, const Limits& limits) {
     const std::size_t count = count_headers(request, "content-length");
     if (count > 1) return Problem{ProblemType::BadRequest, "Send one Content-Length header.", {}};
@@ -67,6 +86,11 @@ bool asks_to_close(const Request& request) {
     return false;
 }
 
+bool awaits_invitation(const Request& request) {
+    return request.header("content-length").value_or("0") != "0" &&
+           expectations(request).find(kInvitation) != std::string::npos;
+}
+
 std::optional<Problem> check_request_head(const Request& request, const Limits& limits) {
     if (request.path.size() > kMaxPathBytes) {
         return Problem{ProblemType::PathTooLong,
@@ -92,7 +116,8 @@ std::optional<Problem> check_request_head(const Request& request, const Limits& 
     if (count_headers(request, "host") > 1) {
         return Problem{ProblemType::BadRequest, "Send one Host header.", {}};
     }
-    return check_length(request, limits);
+    if (auto problem = check_length(request, limits)) return problem;
+    return check_expectations(request);
 }
 
 }  // namespace tinsmith::server

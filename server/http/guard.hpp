@@ -21,4 +21,7 @@ bool takes_body(const std::string& method);
 /// True where the client wants no further request on its connection (RFC 9112 9.6).
 bool asks_to_close(const Request& request);
 
+/// True where an HTTP/1.1 client wants a word before it sends its body (RFC 9110 10.1.1).
+bool awaits_invitation(const Request& request);
+
 }  // namespace tinsmith::server

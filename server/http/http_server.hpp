@@ -41,9 +41,9 @@ struct HttpOptions {
 class HttpServer {
   public:
     /// Who may ask, by the head: nothing, and perhaps a word on who it is, or what is answered
-    /// instead before the body is read. Where `comes_again` the client only wants to know whether
-    /// to send its body.
-    using Admit = std::function<std::optional<Response>(Request& head, bool comes_again)>;
+    /// instead before the body is read, and before a client that asks whether to send it is told
+    /// to.
+    using Admit = std::function<std::optional<Response>(Request& head)>;
     using Answer = std::function<Response(const Request&)>;
     using Finish = std::function<void(const Request&, Response&)>;
     using Told = std::function<void(const Request&, const Response&, double seconds)>;

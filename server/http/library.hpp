@@ -38,6 +38,9 @@ class ConnectionStream final : public httplib::Stream {
         return static_cast<ssize_t>(size);
     }
 
+    /// Forgets what has been written and not sent.
+    void forget() { head_.clear(); }
+
     /// Sends what the library has written, and a body after it. False: it was not taken.
     bool flush(std::string_view body = {}) {
         std::string_view head = head_;

@@ -34,6 +34,9 @@ constexpr std::array kLibraryHeaders{"remote_addr", "remote_port", "local_addr",
 /// library tells one.
 constexpr int kNotModified = 304;
 
+/// To a client that asks before it sends.
+constexpr std::string_view kInvitation = "HTTP/1.1 100 Continue\r\n\r\n";
+
 bool is_library_header(const std::string& name) {
     return std::find(kLibraryHeaders.begin(), kLibraryHeaders.end(), name) != kLibraryHeaders.end();
 }
@@ -64,6 +67,7 @@ httplib::Request& mutable_request(const httplib::Request& raw) {
 
 /// One request on its way through the library, which calls back on the same thread.
 struct Exchange {
+    ConnectionStream& stream;
     Request head;              ///< of a request whose body is being read
     Response answer;           ///< as the library was told it, but for its body
     bool is_for_head = false;  ///< it goes without its body
@@ -101,9 +105,9 @@ class Protocol::Impl {
     }
 
     After exchange(Connection& connection) {
-        Exchange exchange;
-        current_exchange = &exchange;
         ConnectionStream stream(connection, options_.wait, pace_);
+        Exchange exchange{stream, {}, {}};
+        current_exchange = &exchange;
         bool closed = false, fine = false;
         try {
             fine = library_.exchange(stream, closed);
@@ -140,10 +144,6 @@ class Protocol::Impl {
         library_.set_pre_routing_handler(
             [this](const httplib::Request& raw, httplib::Response& out) {
                 return begin(raw, out);
-            });
-        library_.set_expect_100_continue_handler(
-            [this](const httplib::Request& raw, httplib::Response& out) {
-                return invite_body(raw, out);
             });
         // Readers of content get the bytes as they come; the library's other way treats forms
         // specially and cuts them at 8 KiB. `begin` has set the path to "/".
@@ -189,12 +189,12 @@ class Protocol::Impl {
     }
 
     /// What is wrong with the head or with who sends it, as an answer; nothing: go on.
-    std::optional<Response> refusal_of(Head& head, bool comes_again) const {
+    std::optional<Response> refusal_of(Head& head) const {
         Request& request = head.request;
         auto problem = check_request_head(request, options_.limits);
         if (!problem && !head.fault.empty())
             problem = {api::ProblemType::BadRequest, head.fault, {}};
-        auto response = problem ? refuse(request, *problem) : calls_.admit(request, comes_again);
+        auto response = problem ? refuse(request, *problem) : calls_.admit(request);
         if (!response) return std::nullopt;
         response->with("X-Request-Id", request.id);
         response->close = problem || takes_body(request.method);  // what is not read stays there
@@ -204,9 +204,12 @@ class Protocol::Impl {
     /// Before routing and before any body: judges the head, and answers what has no body.
     Handled begin(const httplib::Request& raw, httplib::Response& out) const {
         const auto start = Clock::now();
+        // The library invites bodies for one spelling of Expect, before it has asked anyone, and
+        // those of HTTP/1.0 too: all that it can have written by now.
+        exchange_here().stream.forget();
         Head head = head_of(raw);
         if (raw.version != "HTTP/1.1" || asks_to_close(head.request)) exchange_here().close = true;
-        if (auto refusal = refusal_of(head, false)) {
+        if (auto refusal = refusal_of(head)) {
             finish(raw, out, head.request, std::move(*refusal), start);
             return Handled::Handled;
         }
@@ -217,21 +220,14 @@ class Protocol::Impl {
             // connection ends.
             if (!head.request.header("content-length")) mine.set_header("Content-Length", "0");
             mine.headers.erase("Content-Type");  // its parser of forms calls what nobody gave it
+            if (raw.version == "HTTP/1.1" && awaits_invitation(head.request))
+                exchange_here().stream.write(kInvitation.data(), kInvitation.size());
             exchange_here().head = std::move(head.request);
             return Handled::Unhandled;
         }
         Response response = calls_.answer(head.request);
         finish(raw, out, head.request, std::move(response), start);
         return Handled::Handled;
-    }
-
-    /// A client that asks before it sends is refused before it has sent.
-    int invite_body(const httplib::Request& raw, httplib::Response& out) const {
-        Head head = head_of(raw);
-        auto refusal = refusal_of(head, true);
-        if (!refusal) return 100;
-        finish(raw, out, head.request, std::move(*refusal), Clock::now());
-        return out.status;
     }
 
     void finish_with_body(const httplib::Request& raw, httplib::Response& out,

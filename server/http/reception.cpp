@@ -30,6 +30,8 @@ constexpr milliseconds kTickWhenPaused{20};
 constexpr milliseconds kPauseWithoutMemory{100};
 /// Connections taken before the others are looked at again.
 constexpr int kAcceptedAtOnce = 64;
+/// Whether their request has come by now. They cost a system call each.
+constexpr int kAskedBeforeOneGoes = 16;
 /// So often at the end: as many as the kernel holds for a listener.
 constexpr int kLastTurns = 16;
 
@@ -134,15 +136,14 @@ void Reception::take_last_turn(std::vector<Arrival>& arrived) {
     for (int i = 0; i < kLastTurns && !failed_ && has_pending(); ++i)
         take_turn(listener_, arrived);
     ::close(std::exchange(listener_, -1));
-    std::vector<int> sockets;
-    for (const Wait wait : {Wait::Idle, Wait::First, Wait::Head})
-        for (const Waiting& each : line(wait))
-            sockets.push_back(each.connection->socket());
-    for (const int socket : sockets)
-        take_turn(socket, arrived);
-    for (const Wait wait : {Wait::Idle, Wait::First, Wait::Head})
-        while (!line(wait).empty())
-            leave(line(wait).begin());
+    for (const Wait wait : {Wait::Idle, Wait::First, Wait::Head}) {
+        while (!line(wait).empty()) {
+            const int socket = line(wait).front().connection->socket();
+            take_turn(socket, arrived);
+            if (const auto found = places_.find(socket); found != places_.end())
+                leave(found->second);
+        }
+    }
 }
 
 void Reception::hand_over(std::vector<Arrival>& arrived) {
@@ -205,13 +206,28 @@ void Reception::move_to(Place place, Wait wait) {
     to.splice(to.end(), from, place);
 }
 
-bool Reception::send_one_away() {
-    for (Line& each : lines_) {
-        if (each.empty()) continue;
-        send_away(each.begin());
-        return true;
+/// One of those that have waited longest, of whom nothing has come that nobody has looked at.
+std::optional<Reception::Place> Reception::silent_in(Line& line) const {
+    int left = kAskedBeforeOneGoes;
+    for (Place place = line.begin(); place != line.end() && left > 0; ++place, --left) {
+        const bool may_ask = place->wait == Wait::Idle || place->wait == Wait::First;
+        if (!may_ask || !place->connection->has_more()) return place;
     }
-    return false;
+    return std::nullopt;
+}
+
+bool Reception::send_one_away() {
+    Line* first = nullptr;
+    for (Line& each : lines_) {
+        if (const auto place = silent_in(each)) {
+            send_away(*place);
+            return true;
+        }
+        if (first == nullptr && !each.empty()) first = &each;
+    }
+    if (first == nullptr) return false;
+    send_away(first->begin());
+    return true;
 }
 
 void Reception::send_away(Place place) {
@@ -264,7 +280,7 @@ bool Reception::accept_one(std::vector<Arrival>& arrived) {
         send_away(place);
         return true;
     }
-    look_at(place, arrived);
+    take_turn(socket, arrived);
     return true;
 }
 
@@ -332,7 +348,7 @@ void Reception::look_at_bytes(Place place, std::vector<Arrival>& arrived) {
         send_away(heads.begin());
 }
 
-void Reception::end_waits(std::vector<Arrival>& arrived) {
+void Reception::end_waits(std::vector<Arrival>& arrived) try {
     const Time now = Clock::now();
     for (Line& each : lines_) {
         while (!each.empty() && now - each.front().since >= longest(each.front().wait)) {
@@ -341,6 +357,8 @@ void Reception::end_waits(std::vector<Arrival>& arrived) {
             if (is_late) arrived.push_back({std::move(connection), Arrival::State::Late});
         }
     }
+} catch (const std::bad_alloc&) {
+    ++totals_.sent_away;  // without a word; the others when it looks again
 }
 
 }  // namespace tinsmith::server

@@ -42,7 +42,8 @@ struct Arrival {
 /// Laws: a connection that waits costs no thread and at most `kMaxHeadBytes`, all of them at most
 /// `max_head_bytes`, and none waits for ever. Where there are too many or they hold too much, the
 /// one that has waited longest goes, those first that have nothing left to ask. So who comes and
-/// asks at once gets in, however many sit there.
+/// asks at once gets in, however many sit there. Whose request lies with the kernel already, and
+/// has not been looked at yet, stays as long as there are others.
 /// Cost: a system call or three for a request. epoll(7).
 class Reception {
   public:
@@ -95,6 +96,7 @@ class Reception {
     std::unique_ptr<Connection> leave(Place place);
     void move_to(Place place, Wait wait);
     bool send_one_away();
+    std::optional<Place> silent_in(Line& line) const;
     void send_away(Place place);
 
     void accept_all(std::vector<Arrival>& arrived);

@@ -16,6 +16,10 @@ Limits within_quotas(Limits limits, const KeyQuotas& quotas) {
     tighten(limits.max_polygon_vertices, quotas.max_polygon_vertices);
     tighten(limits.max_crossings, quotas.max_crossings);
     tighten(limits.max_edit_seconds, quotas.max_edit_seconds);
+    tighten(limits.max_history, quotas.max_history);
+    tighten(limits.max_history_bytes, quotas.max_history_bytes);
+    tighten(limits.max_points, quotas.max_points);
+    tighten(limits.max_profile_crossings, quotas.max_profile_crossings);
     return limits;
 }
 

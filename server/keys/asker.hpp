@@ -24,12 +24,17 @@ struct KeyQuotas {
     std::optional<std::size_t> max_polygon_vertices{};
     std::optional<std::uint64_t> max_crossings{};
     std::optional<double> max_edit_seconds{};
+    std::optional<std::size_t> max_history{};        ///< of each of its sessions; 1 at least
+    std::optional<std::size_t> max_history_bytes{};  ///< likewise
+    std::optional<std::size_t> max_points{};
+    std::optional<std::uint64_t> max_profile_crossings{};
+    std::optional<std::size_t> max_queued_jobs{};  ///< of its jobs
 
     friend bool operator==(const KeyQuotas&, const KeyQuotas&) = default;
 };
 
 /// The limits of all, as far as a key's quotas allow. What the key has of its own, sessions and
-/// memory and requests, is for others to count.
+/// memory and requests and jobs, is for others to count.
 Limits within_quotas(Limits limits, const KeyQuotas& quotas);
 
 /// Who asks: a key, or nobody in particular where the server asks for none.

@@ -106,12 +106,6 @@ class Gate::Pass {
 
 Gate::Gate(const KeyRing& keys, Clock clock) : keys_(keys), clock_(std::move(clock)) {}
 
-std::optional<Response> Gate::would_refuse(const Request& request) const {
-    if (!is_behind_keys(request) || !keys_.wants_keys()) return std::nullopt;
-    const auto asker = keys_.find(shown_key(request));
-    return asker ? refuse_length(request, asker->quotas) : refuse_stranger(request);
-}
-
 std::optional<Response> Gate::admit(Request& request) {
     if (!is_behind_keys(request) || !keys_.wants_keys()) return std::nullopt;
     auto asker = keys_.find(shown_key(request));

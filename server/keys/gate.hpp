@@ -33,9 +33,6 @@ class Gate {
 
     /// What is answered instead; nothing: go on, the request says who asks.
     std::optional<Response> admit(Request& request);
-    /// The same for a client that wants to know before it sends its body: counts nothing, since the
-    /// request itself comes again.
-    std::optional<Response> would_refuse(const Request& request) const;
 
   private:
     /// Of one key, by its id.

@@ -35,6 +35,7 @@ struct Quota {
     std::optional<double> (*get)(const KeyQuotas&);
     void (*set)(KeyQuotas&, double);
     bool is_whole;
+    double least = 0.0;
 };
 
 template <auto member>
@@ -49,8 +50,8 @@ void set(KeyQuotas& quotas, double value) {
     place = static_cast<Number>(value);
 }
 template <auto member>
-constexpr Quota quota(std::string_view name, bool is_whole) {
-    return {name, get<member>, set<member>, is_whole};
+constexpr Quota quota(std::string_view name, bool is_whole, double least = 0.0) {
+    return {name, get<member>, set<member>, is_whole, least};
 }
 
 constexpr std::array kQuotas{
@@ -65,6 +66,11 @@ constexpr std::array kQuotas{
     quota<&KeyQuotas::max_polygon_vertices>("max_polygon_vertices", true),
     quota<&KeyQuotas::max_crossings>("max_crossings", true),
     quota<&KeyQuotas::max_edit_seconds>("max_edit_seconds", false),
+    quota<&KeyQuotas::max_history>("max_history", true, 1.0),
+    quota<&KeyQuotas::max_history_bytes>("max_history_bytes", true),
+    quota<&KeyQuotas::max_points>("max_points", true),
+    quota<&KeyQuotas::max_profile_crossings>("max_profile_crossings", true),
+    quota<&KeyQuotas::max_queued_jobs>("max_queued_jobs", true),
 };
 
 std::string in_quotes(std::string_view text) {
@@ -101,10 +107,11 @@ std::string read_quota(std::string_view word, KeyQuotas& quotas) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool is_number = error == std::errc() && end == text.data() + text.size() &&
-                           std::isfinite(value) && value >= 0.0 && value <= kLargestQuota;
+                           std::isfinite(value) && value >= known->least && value <= kLargestQuota;
     if (!is_number || (known->is_whole ? value != std::floor(value) : value <= 0.0)) {
         return std::string(name) + " cannot be " + in_quotes(text) + ": give a " +
-               (known->is_whole ? "whole number, 0 or more" : "number above 0");
+               (known->is_whole ? "whole number, " + quota_text(known->least) + " or more"
+                                : std::string("number above 0"));
     }
     known->set(quotas, value);
     return {};

@@ -91,7 +91,8 @@ std::optional<TerrainFormat> format_of(const api::FormPart& part) {
 }
 
 std::optional<LoadedTerrain> read_terrain(const api::ReadLimits& limits, const api::FormPart& part,
-                                          const api::TerrainOptions& options, FormFaults& faults) {
+                                          const api::TerrainOptions& options, MemoryToBuild& memory,
+                                          FormFaults& faults) {
     const auto format = format_of(part);
     if (!format) {
         faults.add(api::FaultKind::Invalid, kTerrain,
@@ -101,7 +102,8 @@ std::optional<LoadedTerrain> read_terrain(const api::ReadLimits& limits, const a
                      {}}});
         return std::nullopt;
     }
-    auto terrain = load_terrain(part.body, *format, options, limits);
+    auto terrain = load_terrain(part.body, *format, options, limits,
+                                [&memory](std::size_t bytes) { return memory.take(bytes); });
     if (terrain) return std::move(*terrain);
     faults.add(terrain.kind(), kTerrain, std::move(terrain.faults()));
     return std::nullopt;
@@ -253,8 +255,10 @@ Response integrate_once(Services& services, const Request& request, const PathAr
     const api::ReadLimits limits = services.read_limits(request.asker);
     const Options options = read_options(limits, form.options, faults);
     std::optional<LoadedTerrain> terrain;
+    std::optional<MemoryToBuild> memory(std::in_place, services, request);
     if (form.terrain != nullptr)
-        terrain = read_terrain(limits, *form.terrain, options.terrain, faults);
+        terrain = read_terrain(limits, *form.terrain, options.terrain, *memory, faults);
+    if (auto refusal = memory->refusal()) return *std::move(refusal);
     std::optional<PolygonWork> work;
     if (form.polygons != nullptr) {
         begin_stage(0.1);
@@ -270,6 +274,7 @@ Response integrate_once(Services& services, const Request& request, const PathAr
     if (!faults.faults.empty()) {
         return refuse(request, api::problem_of_faults(faults.kind, std::move(faults.faults)));
     }
+    memory.reset();  // from here on the mesh is counted
     return integrate(services, request, *std::move(terrain), *std::move(work),
                      std::get<0>(accepted), options.mesh)
         .with("Vary", "Accept");

@@ -139,7 +139,7 @@ Response ask_elevations(Services& services, const Request& request,
     const Session& session = *std::get<0>(found);
     if (auto refusal = refusal_of_type(request, "points")) return *refusal;
     api::ReadLimits limits = services.read_limits(request.asker);
-    limits.max_polygon_vertices = services.limits.max_points;
+    limits.max_polygon_vertices = services.limits_of(request.asker).max_points;
     auto points = api::read_points(request.body, limits);
     if (!points) return refuse_faults(request, points.kind(), std::move(points.faults()));
     auto options = read_crs_option(request);

@@ -74,6 +74,14 @@ Handler deferrable(Services& services, Handler handler, Names names) {
                                : handler(asked, arguments);
                 });
             });
+        if (!job && services.jobs.is_at_quota(request.asker)) {
+            return refuse(request, api::ProblemType::TooManyRequests,
+                          "As many jobs of this key wait as its quota max_queued_jobs of " +
+                              std::to_string(request.asker.quotas.max_queued_jobs.value_or(0)) +
+                              " allows; nothing was begun. Ask again in a moment, or without "
+                              "Prefer: respond-async.")
+                .with("Retry-After", "5");
+        }
         if (!job) {
             return refuse(request, api::ProblemType::TooManyJobs,
                           "The server has as many jobs as it takes; nothing was begun. Ask again "

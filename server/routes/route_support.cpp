@@ -302,6 +302,25 @@ Step<BorrowedMemory> require_memory(Services& services, const Request& request, 
                       " with all meshes. Try again later, or DELETE sessions that are not needed.");
 }
 
+bool MemoryToBuild::take(std::size_t bytes) {
+    auto memory = services_.sessions.borrow(bytes);
+    if (memory) {
+        memory_.emplace(*std::move(memory));
+    } else {
+        refused_ = bytes;
+    }
+    return memory_.has_value();
+}
+
+std::optional<Response> MemoryToBuild::refusal() const {
+    if (refused_ == 0) return std::nullopt;
+    return refuse(request_, api::ProblemType::OutOfMemory,
+                  "To build this mesh takes about " + std::to_string(refused_) +
+                      " bytes, which would pass the limit max_memory_bytes of " +
+                      std::to_string(services_.limits.max_memory_bytes) +
+                      " with all meshes. Try again later, or DELETE sessions that are not needed.");
+}
+
 std::optional<Response> refusal_of_memory(Services& services, const Request& request) {
     const auto quota = request.asker.quotas.max_memory_bytes;
     if (quota && services.sessions.share_of(request.asker.id).memory_bytes > *quota) {

@@ -122,6 +122,24 @@ std::string text_of(double value);
 /// Memory for copies of meshes, or 507.
 Step<BorrowedMemory> require_memory(Services& services, const Request& request, std::size_t bytes);
 
+/// Memory for a mesh that is built of what a request brought, held as long as this lives.
+class MemoryToBuild {
+  public:
+    MemoryToBuild(Services& services, const Request& request)
+        : services_(services), request_(request) {}
+
+    /// Whether there is so much. Once.
+    bool take(std::size_t bytes);
+    /// 507 where there was not.
+    std::optional<Response> refusal() const;
+
+  private:
+    Services& services_;
+    const Request& request_;
+    std::optional<BorrowedMemory> memory_;
+    std::size_t refused_ = 0;
+};
+
 /// About what a copy of a mesh, its encoding and the answer take together, beside the mesh itself,
 /// at most: of every format the dearest, as measured with a million triangles.
 constexpr std::size_t bytes_to_encode(std::size_t mesh_bytes) {

@@ -74,11 +74,15 @@ Response make_session(Services& services, const Request& request, std::optional<
     if (const auto* refusal = std::get_if<Response>(&format)) return *refusal;
     const auto options = api::parse_terrain_options(options_of_query(request));
     if (!options) return refuse(request, api::problem_of_faults(options.kind(), options.faults()));
+    std::optional<MemoryToBuild> memory(std::in_place, services, request);
     auto terrain = load_terrain(request.body, std::get<0>(format), *options,
-                                services.read_limits(request.asker));
+                                services.read_limits(request.asker),
+                                [&memory](std::size_t bytes) { return memory->take(bytes); });
+    if (auto refusal = memory->refusal()) return *std::move(refusal);
     if (!terrain) {
         return refuse(request, api::problem_of_faults(terrain.kind(), std::move(terrain.faults())));
     }
+    memory.reset();  // what the session holds is counted with it
     const auto added = services.sessions.add(std::move(terrain->tin), terrain->about, request.asker,
                                              std::move(id));
     if (const auto* why = std::get_if<StoreRefusal>(&added)) {

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "tests/attack/edge_problem.hpp"
 #include "tests/attack/proxy.hpp"
 #include "tests/attack/victim.hpp"
 #include "tests/durability/bench_print.hpp"
@@ -61,19 +61,9 @@ class Edge : public testing::Test {
         return connection.read();
     }
 
-    /// A problem as the server writes them, whoever says it.
     void expect_problem(const std::string& bytes, int status, const std::string& word) {
         SCOPED_TRACE(bytes.substr(0, 200));
-        const Answer answer = send(bytes);
-        ASSERT_EQ(answer.status, status) << answer.body;
-        EXPECT_EQ(answer.header("content-type"), "application/problem+json");
-        const auto problem = nlohmann::json::parse(answer.body, nullptr, false);
-        ASSERT_TRUE(problem.is_object()) << answer.body;
-        EXPECT_EQ(problem.value("type", ""), "urn:tinsmith:problem:" + word);
-        EXPECT_EQ(problem.value("status", 0), status);
-        EXPECT_NE(problem.value("title", ""), "");
-        EXPECT_NE(problem.value("detail", ""), "");
-        EXPECT_NE(problem.value("request_id", ""), "");
+        e2e::expect_problem(send(bytes), status, word);
     }
 
     static std::string post(const std::string& headers, const std::string& body = {}) {

@@ -35,15 +35,25 @@ int free_port() {
     return ntohs(address.sin_port);
 }
 
-[[noreturn]] void become_proxy(const std::string& program, int port, int server_port, int output) {
+/// Nothing, where one of the texts is not there.
+std::string changed(std::string text, const Proxy::Changes& changes) {
+    for (const auto& [from, to] : changes) {
+        const std::size_t found = text.find(from);
+        if (found == std::string::npos) return {};
+        text.replace(found, from.size(), to);
+    }
+    return text;
+}
+
+[[noreturn]] void become_proxy(const std::string& program, const std::string& configuration,
+                               int port, int server_port, int output) {
     const std::string at = std::to_string(port);
     const std::string server = "127.0.0.1:" + std::to_string(server_port);
     ::setenv("TINSMITH_EDGE_PORT", at.c_str(), 1);
     ::setenv("TINSMITH_SERVER", server.c_str(), 1);
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);
-    ::execl(program.c_str(), program.c_str(), "-db", "-f",
-            TINSMITH_SOURCE_DIR "/docker/haproxy.cfg", nullptr);
+    ::execl(program.c_str(), program.c_str(), "-db", "-f", configuration.c_str(), nullptr);
     ::_exit(127);
 }
 
@@ -55,11 +65,14 @@ std::string Proxy::program() {
     return {};
 }
 
-Proxy::Proxy(int server_port) : output_(scratch_.file("proxy")) {
+Proxy::Proxy(int server_port, const Changes& changes) : output_(scratch_.file("proxy")) {
+    const std::string configuration = scratch_.file("haproxy.cfg");
+    write_content(configuration,
+                  changed(content_of(TINSMITH_SOURCE_DIR "/docker/haproxy.cfg"), changes));
     const int port = free_port();
     const int file = ::open(output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600);
     pid_ = ::fork();
-    if (pid_ == 0) become_proxy(program(), port, server_port, file);
+    if (pid_ == 0) become_proxy(program(), configuration, port, server_port, file);
     ::close(file);
     // It takes the server for sound until a check says otherwise, so one good answer is enough.
     for (int i = 0; i < 500 && port_ == 0 && is_running(); ++i) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -13,7 +15,10 @@ namespace tinsmith::e2e {
 /// not outlive the object.
 class Proxy {
   public:
-    explicit Proxy(int server_port);
+    /// Texts of the configuration, and what stands there instead.
+    using Changes = std::vector<std::pair<std::string, std::string>>;
+
+    explicit Proxy(int server_port, const Changes& changes = {});
     ~Proxy();
     Proxy(const Proxy&) = delete;
     Proxy& operator=(const Proxy&) = delete;

@@ -108,6 +108,35 @@ TEST_F(Hostile, Invitations) {
     EXPECT_EQ(connection.read().status, 100);
     connection.send("{}");
     EXPECT_EQ(connection.read().status, 422);
+    connection.send(post("Content-Length: 2\r\nExpect: 100-Continue\r\n"));
+    EXPECT_EQ(connection.read().status, 100) << "in any case";
+    connection.send("{}");
+    EXPECT_EQ(connection.read().status, 422);
+    // Nothing is to come.
+    connection.send(post("Content-Length: 0\r\nExpect: 100-continue\r\n"));
+    EXPECT_EQ(connection.read().status, 400);
+    connection.send(get("Expect: 100-continue\r\n"));
+    EXPECT_EQ(connection.read().status, 200);
+}
+
+/// RFC 9110 10.1.1: HTTP/1.0 has no invitations.
+TEST_F(Hostile, InvitationsOfAnOlderTime) {
+    for (const std::string version : {"1.1", "1.0"}) {
+        Connection connection(server->port());
+        std::string request = post("Content-Length: 2\r\nExpect: 100-continue\r\n", "{}");
+        request.replace(request.find("1.1"), 3, version);
+        connection.send(request);
+        if (version == "1.1") {
+            EXPECT_EQ(connection.read().status, 100);
+        }
+        EXPECT_EQ(connection.read().status, 422) << version;
+    }
+}
+
+TEST_F(Hostile, OtherExpectations) {
+    expect_refused(post("Content-Length: 2\r\nExpect: a-miracle\r\n"), 417);
+    expect_refused(post("Content-Length: 2\r\nExpect: 100-continue, a-miracle\r\n"), 417);
+    expect_refused(get("Expect: a-miracle\r\n"), 417);
 }
 
 TEST_F(Hostile, Headers) {

@@ -182,6 +182,7 @@ export const STRICT_REFUSALS = [
 export const ELSEWHERE = {
   'api-key-required': 'KeyRoutes.AreWantedByEveryRouteUnderV1',
   'too-many-requests': 'KeyGate.CountsRequestsInFlight',
+  'expectation-failed': 'Guard.RefusesExpectationsItDoesNotKnow',
   'request-timeout': 'ProblemOfStatus.FindsAProblemForWhatTheTransportRefuses',
   'method-not-allowed': 'Router.NamesTheMethodsOfAPath',
   'key-reused': 'Retries.AreRefusedWhereTheRequestIsAnother',

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "api/problem.hpp"
 
+#include <algorithm>
+#include <fstream>
+#include <regex>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -83,6 +87,38 @@ TEST(ProblemOfStatus, FindsAProblemForWhatTheTransportRefuses) {
     }
     EXPECT_EQ(problem_of_status(499), ProblemType::BadRequest);
     EXPECT_EQ(problem_of_status(599), ProblemType::Internal);
+}
+
+/// What the edge refuses by itself is said in the words that the server has for it.
+TEST(Problems, AreTheSameAtTheEdge) {
+    std::ifstream file(TINSMITH_SOURCE_DIR "/docker/haproxy.cfg");
+    static const std::regex kAnswer(
+        R"(\bstatus (\d+) content-type application/problem\+json .*'(\{.*\})')");
+    static const std::regex kValue(R"(%\[[a-z_().]*\])");
+    int count = 0;
+    for (std::string line; std::getline(file, line);) {
+        std::smatch match;
+        if (line.find("urn:tinsmith:problem:") == std::string::npos) continue;
+        ++count;
+        ASSERT_TRUE(std::regex_search(line, match, kAnswer)) << line;
+        const int status = std::stoi(match[1]);
+        const json problem = json::parse(std::regex_replace(match[2].str(), kValue, "x"));
+        const std::string word = problem["type"].get<std::string>().substr(21);
+        const auto types = all_problems();
+        const auto type = std::find_if(types.begin(), types.end(), [&word](ProblemType one) {
+            return problem_word(one) == word;
+        });
+        ASSERT_NE(type, types.end()) << word;
+        EXPECT_EQ(problem["status"], status) << line;
+        // A server that does not answer has failed; HTTP has its own statuses for that.
+        EXPECT_EQ(status == 502 || status == 504 ? 500 : status, problem_status(*type)) << line;
+        EXPECT_EQ(problem["title"], problem_title(*type));
+        const Problem same{*type, problem["detail"], {}};
+        json written = json::parse(write_problem(same, "x", "x"));
+        written["status"] = status;
+        EXPECT_EQ(problem, written);
+    }
+    EXPECT_GE(count, 10);
 }
 
 }  // namespace

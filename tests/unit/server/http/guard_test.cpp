@@ -54,6 +54,29 @@ TEST(Guard, RefusesWhatCostsTooMuch) {
     EXPECT_EQ(verdict("GET", {{"host", "a"}, {"host", "b"}}), 400);
 }
 
+TEST(Guard, RefusesExpectationsItDoesNotKnow) {
+    for (const char* known :
+         {"", "100-continue", "100-Continue", " ,100-CONTINUE,", "100-continue, 100-continue"})
+        EXPECT_EQ(verdict("POST", {{"expect", known}, {"content-length", "5"}}), 0) << known;
+    for (const char* unknown : {"200-ok", "100", "100-continue;q=1", "100-continue=1",
+                                "100-continue, eggs", "\"100-continue\""})
+        EXPECT_EQ(verdict("POST", {{"expect", unknown}, {"content-length", "5"}}), 417) << unknown;
+    EXPECT_EQ(verdict("GET", {{"expect", "100-continue"}, {"expect", "eggs"}}), 417);
+}
+
+TEST(Guard, KnowsWhoWaitsBeforeItSends) {
+    const auto waits = [](std::vector<NameValue> headers) {
+        Request request;
+        request.headers = std::move(headers);
+        return awaits_invitation(request);
+    };
+    EXPECT_TRUE(waits({{"expect", "100-continue"}, {"content-length", "5"}}));
+    EXPECT_TRUE(waits({{"expect", "100-Continue"}, {"content-length", "5"}}));
+    EXPECT_FALSE(waits({{"content-length", "5"}}));
+    EXPECT_FALSE(waits({{"expect", "100-continue"}})) << "it has nothing to send";
+    EXPECT_FALSE(waits({{"expect", "100-continue"}, {"content-length", "0"}}));
+}
+
 TEST(Guard, NamesTheLimit) {
     Request request;
     request.method = "POST";

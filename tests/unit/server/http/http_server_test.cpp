@@ -46,7 +46,7 @@ class ServerAtWork {
     }
 
     HttpServer::Calls calls() {
-        return {[](Request&, bool) { return std::nullopt; },
+        return {[](Request&) { return std::nullopt; },
                 [this](const Request& request) {
                     ++answered;
                     while (is_held)

@@ -1,79 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http/reception.hpp"
 
-#include <condition_variable>
-#include <deque>
-#include <thread>
+#include <list>
 
 #include <gtest/gtest.h>
 
-#include "server/http/listener.hpp"
 #include "server/http/request_head.hpp"
-#include "tests/e2e/wire.hpp"
+#include "tests/unit/server/http/reception_at_work.hpp"
 
 namespace tinsmith::server {
 namespace {
-
-using std::chrono::milliseconds;
-using Client = e2e::Connection;
-
-const std::string kGet = "GET / HTTP/1.1\r\nHost: x\r\n\r\n";
-
-/// A reception and what has arrived at it.
-class ReceptionAtWork {
-  public:
-    explicit ReceptionAtWork(ReceptionOptions options = {})
-        : listener_(listen_on("127.0.0.1", 0)),
-          reception_(listener_.socket, options, totals,
-                     [this](Arrival arrival) { take(std::move(arrival)); }),
-          thread_([this] { EXPECT_TRUE(reception_.run()); }) {}
-    ~ReceptionAtWork() { stop(); }
-
-    ConnectionTotals totals;
-
-    int port() const { return listener_.port; }
-    Reception& operator*() { return reception_; }
-
-    void stop() {
-        reception_.stop();
-        if (thread_.joinable()) thread_.join();
-    }
-
-    /// The next, or one without a connection where none comes for so long.
-    Arrival next(milliseconds longest = milliseconds(10'000)) {
-        std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, longest, [this] { return !arrived_.empty(); });
-        if (arrived_.empty()) return {};
-        Arrival arrival = std::move(arrived_.front());
-        arrived_.pop_front();
-        return arrival;
-    }
-
-  private:
-    void take(Arrival arrival) {
-        {
-            const std::lock_guard lock(mutex_);
-            arrived_.push_back(std::move(arrival));
-        }
-        changed_.notify_all();
-    }
-
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Arrival> arrived_;
-    Listener listener_;
-    Reception reception_;
-    std::thread thread_;
-};
-
-bool becomes(const std::function<bool()>& is_so) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (!is_so()) {
-        if (std::chrono::steady_clock::now() > end) return false;
-        std::this_thread::yield();
-    }
-    return true;
-}
 
 ReceptionOptions with_waits(int head, int idle) {
     ReceptionOptions options;
@@ -199,6 +135,62 @@ TEST(Reception, LetsInWhoAsksWhereOthersKeepTheirConnections) {
     honest.send(kGet);
     EXPECT_TRUE(reception.next().connection);
     EXPECT_TRUE(kept.front().is_closed()) << "the one that has idled longest";
+}
+
+/// Whose request has come, but had no turn yet, is not sent away as one that says nothing.
+TEST(Reception, KeepsThoseWhoseRequestIsThereAlready) {
+    for (const bool is_kept : {true, false}) {
+        ReceptionOptions options;
+        options.max_connections = 3;
+        ReceptionAtWork reception(options);
+        const Client asks(reception.port());  // has waited longest
+        if (is_kept) {
+            asks.send(kGet);
+            Arrival arrival = reception.next();
+            ASSERT_TRUE(arrival.connection);
+            arrival.connection->use(kGet.size());
+            EXPECT_FALSE((*reception).keep(std::move(arrival.connection)));
+        }
+        Client silent(reception.port());
+        const Client holds(reception.port());
+        ASSERT_TRUE(becomes([&] { return reception.totals.connections == 3; }));
+        reception.hold();
+        holds.send(kGet);
+        Arrival held = reception.next();
+        ASSERT_TRUE(held.connection);
+        const Client comes(reception.port());  // so the listener has its turn first
+        comes.send(kGet);
+        asks.send(kGet);
+        reception.let_go();
+        for (int i = 0; i < 2; ++i)
+            EXPECT_TRUE(reception.next().connection) << is_kept << i;
+        EXPECT_TRUE(silent.is_closed());
+        EXPECT_EQ(reception.totals.sent_away, 1U);
+    }
+}
+
+/// There has to be room for the one that comes, whatever the others have sent.
+TEST(Reception, SendsOneAwayWhereAllHaveAsked) {
+    ReceptionOptions options;
+    options.max_connections = 3;
+    ReceptionAtWork reception(options);
+    std::list<Client> clients;
+    for (int i = 0; i < 3; ++i)
+        clients.emplace_back(reception.port());
+    ASSERT_TRUE(becomes([&] { return reception.totals.connections == 3; }));
+    reception.hold();
+    clients.back().send(kGet);
+    const Arrival held = reception.next();
+    ASSERT_TRUE(held.connection);
+    const Client comes(reception.port());
+    comes.send(kGet);
+    for (Client& client : clients)
+        client.send(kGet);
+    reception.let_go();
+    for (int i = 0; i < 2; ++i)
+        EXPECT_TRUE(reception.next().connection) << i;
+    EXPECT_TRUE(clients.front().is_closed());
+    EXPECT_LE(reception.totals.connections, 3U);
 }
 
 TEST(Reception, TakesAnEmptyLineForNoRequest) {

@@ -318,5 +318,42 @@ TEST_F(FewJobs, SayWhenToComeAgain) {
     EXPECT_EQ(router.handle(request).status, 201) << "the key was not used up";
 }
 
+/// One key's jobs do not take the places of all.
+TEST(JobsOfAKey, WaitAsFarAsItsQuotaGoes) {
+    Limits limits;
+    limits.job_threads = 1;
+    Services services{limits};
+    Router router{make_routes(services)};
+    std::atomic<bool> is_held{true};
+    const auto holds = [&is_held](const Request&) {
+        while (is_held)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return Response{};
+    };
+    Request request{
+        "POST", "/v1/sessions", {}, {kAsync, {"content-type", "application/json"}}, kSquare,
+        {},     "test"};
+    ASSERT_TRUE(services.jobs.add(request, holds));
+    while (services.jobs.counts().running == 0)
+        std::this_thread::yield();
+    request.asker = {"01", "alice", {.max_queued_jobs = 2}};
+    EXPECT_EQ(router.handle(request).status, 202);
+    EXPECT_EQ(router.handle(request).status, 202);
+    const Response full = router.handle(request);
+    EXPECT_EQ(full.status, 429);
+    EXPECT_EQ(full.problem, "too-many-requests");
+    EXPECT_NE(full.body.find("quota max_queued_jobs of 2"), std::string::npos) << full.body;
+    EXPECT_TRUE(std::ranges::any_of(
+        full.headers, [](const NameValue& header) { return header.first == "Retry-After"; }));
+    Request other = request;
+    other.asker = {"02", "bob", {.max_queued_jobs = 1}};
+    EXPECT_EQ(router.handle(other).status, 202);
+    EXPECT_EQ(services.jobs.counts().queued, 3U);
+    is_held = false;
+    while (services.jobs.counts().queued > 0)
+        std::this_thread::yield();
+    EXPECT_EQ(router.handle(request).status, 202) << "there is room again";
+}
+
 }  // namespace
 }  // namespace tinsmith::server

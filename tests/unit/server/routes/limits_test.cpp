@@ -158,6 +158,44 @@ void pass_max_edit_seconds(Server& server) {
     EXPECT_EQ(json::parse(server.send("GET", kSession).body)["version"], 1);
 }
 
+void pass_max_history(Server& server) {
+    server.make_session();
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(server.send("POST", kSession + "/polygons", circle(5 + i)).status, 200);
+    const json history = json::parse(server.send("GET", kSession + "/history").body);
+    EXPECT_EQ(history["changes"].size(), 3U) << history;
+    expect_named(server.send("DELETE", kSession + "/polygons/p3"), 409, "polygon-settled",
+                 "max_history");
+    EXPECT_EQ(server.send("GET", kSession + "/mesh.json?version=3").status, 410);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 409);
+}
+
+/// The newest is kept, whatever it holds.
+void pass_max_history_bytes(Server& server) {
+    server.make_session();
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(server.send("POST", kSession + "/polygons", circle(5 + i)).status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 409);
+}
+
+void pass_max_points(Server& server) {
+    server.make_session();
+    expect_named(server.send("POST", kSession + "/elevation", R"({"points": [[1,1],[2,2],[3,3]]})"),
+                 413, "too-large", "max_points");
+    EXPECT_EQ(server.send("POST", kSession + "/elevation", R"({"points": [[1,1],[2,2]]})").status,
+              200);
+}
+
+void pass_max_profile_crossings(Server& server) {
+    server.make_session();
+    expect_named(server.send("POST", kSession + "/profile",
+                             R"({"type": "LineString", "coordinates": [[1,2],[89,77]]})"),
+                 422, "budget-exceeded", "max_profile_crossings");
+}
+
 struct Row {
     const char* name;
     Limits limits;
@@ -182,6 +220,16 @@ std::vector<Row> rows() {
          {.max_edit_seconds = 1e-9},
          {.max_edit_seconds = 1e-9},
          pass_max_edit_seconds},
+        {"max_history", {.max_history = 2}, {.max_history = 2}, pass_max_history},
+        {"max_history_bytes",
+         {.max_history_bytes = 100},
+         {.max_history_bytes = 100},
+         pass_max_history_bytes},
+        {"max_points", {.max_points = 2}, {.max_points = 2}, pass_max_points},
+        {"max_profile_crossings",
+         {.max_profile_crossings = 3},
+         {.max_profile_crossings = 3},
+         pass_max_profile_crossings},
     };
 }
 
@@ -206,19 +254,47 @@ TEST(LimitRoutes, HoldAKeyToItsOwn) {
         wide.max_session_bytes = SIZE_MAX;
         wide.max_crossings = UINT64_MAX;
         wide.max_edit_seconds = 1e9;
+        wide.max_history = wide.max_history_bytes = wide.max_points = SIZE_MAX;
+        wide.max_profile_crossings = UINT64_MAX;
         Server third(limits, {"03", "carol", wide});
         pass(third);
     }
 }
 
-TEST(LimitRoutes, NameThoseOfQuestions) {
-    Server server({.max_points = 2, .max_profile_crossings = 3});
+/// A quota that is tightened later holds from the next change on; what is everyone's is not one
+/// key's to forget.
+TEST(LimitRoutes, BoundTheHistoryOfAKeysOwnSessions) {
+    Server server({}, {"01", "alice", {}});
     server.make_session();
-    expect_named(server.send("POST", kSession + "/elevation", R"({"points": [[1,1],[2,2],[3,3]]})"),
-                 413, "too-large", "max_points");
-    expect_named(server.send("POST", kSession + "/profile",
-                             R"({"type": "LineString", "coordinates": [[1,2],[89,77]]})"),
-                 422, "budget-exceeded", "max_profile_crossings");
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(server.send("POST", kSession + "/polygons", circle(5 + i)).status, 200);
+    const auto changes = [&server](const std::string& session) {
+        return json::parse(server.send("GET", session + "/history").body)["changes"].size();
+    };
+    EXPECT_EQ(changes(kSession), 6U);
+    const json fork = json::parse(server.send("POST", kSession + "/fork").body);
+    const std::string copy = "/v1/sessions/" + fork["id"].get<std::string>();
+    server.asker.quotas.max_history = 1;
+    EXPECT_EQ(changes(kSession), 6U) << "nothing changed yet";
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 200);
+    EXPECT_EQ(changes(kSession), 2U);
+    EXPECT_EQ(server.send("POST", kSession + "/redo").status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/polygons", circle(20)).status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 200);
+    EXPECT_EQ(server.send("POST", kSession + "/undo").status, 409);
+    server.asker.quotas.max_history = 4;
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(server.send("POST", kSession + "/polygons", circle(30 + i)).status, 200);
+    EXPECT_EQ(changes(kSession), 5U) << "and it may be widened";
+    EXPECT_EQ(changes(copy), 6U);
+
+    server.asker = {};
+    const std::string shared = "/v1/sessions/everyones";
+    EXPECT_EQ(server.send("PUT", shared, grid(10)).status, 201);
+    server.asker = {"01", "alice", {.max_history = 1}};
+    for (int i = 0; i < 3; ++i)
+        EXPECT_EQ(server.send("POST", shared + "/polygons", circle(5 + i)).status, 200);
+    EXPECT_EQ(changes(shared), 4U);
 }
 
 TEST(LimitRoutes, NameThoseOfForks) {
@@ -246,17 +322,15 @@ TEST(Turnstile, LetsSoManyInAtATime) {
     const std::weak_ptr<const void> of_key = first->pass;
     EXPECT_FALSE(turnstile.admit(*first));
     Request second = request_to("/%761/sessions/s/polygons", "POST");
-    EXPECT_FALSE(turnstile.would_refuse(second));
     EXPECT_FALSE(turnstile.admit(second));
     for (int i = 0; i < 3; ++i) {
         Request third = request_to("/v1/limits");
-        for (const auto& refusal : {turnstile.would_refuse(third), turnstile.admit(third)}) {
-            ASSERT_TRUE(refusal);
-            EXPECT_EQ(refusal->status, 503);
-            EXPECT_EQ(refusal->problem, "busy");
-            EXPECT_NE(refusal->body.find("max_requests of 2"), std::string::npos);
-            EXPECT_EQ(refusal->headers.front(), NameValue("Retry-After", "1"));
-        }
+        const auto refusal = turnstile.admit(third);
+        ASSERT_TRUE(refusal);
+        EXPECT_EQ(refusal->status, 503);
+        EXPECT_EQ(refusal->problem, "busy");
+        EXPECT_NE(refusal->body.find("max_requests of 2"), std::string::npos);
+        EXPECT_EQ(refusal->headers.front(), NameValue("Retry-After", "1"));
         EXPECT_FALSE(third.pass);
     }
     for (const char* open : {"/healthz", "/readyz", "/metrics", "/", "/openapi.json"}) {
