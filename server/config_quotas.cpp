@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <optional>
 
+#include <CLI/CLI.hpp>
+
 #include "server/config_flags.hpp"
 
 namespace tinsmith::server {

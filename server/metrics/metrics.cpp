@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 8> kMethods{"GET",   "HEAD",   "POST",   
 /// What the server and the library below it answer with.
 constexpr std::array kStatuses{200, 201, 202, 204, 304, 400, 401, 403, 404, 405,
                                406, 408, 409, 410, 411, 412, 413, 414, 415, 416,
-                               422, 428, 429, 431, 500, 501, 503, 505, 507};
+                               417, 422, 428, 429, 431, 500, 501, 503, 505, 507};
 constexpr std::size_t kOther = kStatuses.size();
 constexpr const char* kNoRoute = "none";
 

@@ -102,6 +102,8 @@ TEST(Rules, CatchALibraryAwayFromHome) {
     EXPECT_NE(verdict("api/problem.cpp", "#include <spdlog/spdlog.h>"), "");
     EXPECT_NE(verdict("server/session.cpp", "#include <gtest/gtest.h>"), "");
     EXPECT_EQ(verdict("api/problem.cpp", "#include <nlohmann/json.hpp>"), "");
+    EXPECT_NE(verdict("server/http/guard.hpp", "#include <httplib.h>"), "");
+    EXPECT_EQ(verdict("server/http/library.hpp", "#pragma once\n#include <httplib.h>"), "");
 }
 
 TEST(Rules, CatchASecondHome) {

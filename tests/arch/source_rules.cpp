@@ -98,10 +98,11 @@ std::optional<std::size_t> rank(std::string_view path) {
 bool is_core_header(const std::string& name) {
     return kCoreHeaders.find(" " + name + " ") != std::string_view::npos;
 }
-/// Whether the library lives in just that file.
-bool is_home_of(const std::string& path, const std::string& header) {
+/// Whether the library lives there, or in just that file.
+bool is_home_of(const std::string& path, const std::string& header, bool alone = true) {
     return std::any_of(kHomes.begin(), kHomes.end(), [&](const Home& home) {
-        return home.one_file_only && std::regex_match(header, std::regex(home.headers)) &&
+        return (home.one_file_only || !alone) &&
+               std::regex_match(header, std::regex(home.headers)) &&
                std::regex_match(path, std::regex(home.files));
     });
 }
@@ -162,7 +163,8 @@ class FileCheck {
             report(include.line, "<" + include.name + "> is not for core");
             return;
         }
-        if (is_header(source_.path) && include.name.find_first_of("./") != std::string::npos)
+        if (is_header(source_.path) && include.name.find_first_of("./") != std::string::npos &&
+            !is_home_of(source_.path, include.name, false))
             report(include.line, "<" + include.name + "> is not for a header");
         for (const Home& home : kHomes) {
             if (std::regex_match(include.name, std::regex(home.headers)) &&
