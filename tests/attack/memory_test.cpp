@@ -19,7 +19,7 @@ constexpr double kMebi = 1 << 20;
 /// Of the process itself, and what the allocator cannot join.
 constexpr double kSlack = 16;
 /// What docker/README.md says of a terrain that is read.
-constexpr double kBytesOfVertex = 80;
+constexpr double kBytesOfVertex = 128;
 
 struct Body {
     std::string name;
