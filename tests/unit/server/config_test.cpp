@@ -255,6 +255,15 @@ TEST(CommandLine, ReadsQuotasOfAKey) {
     const Command all = parse({"key", "add", "alice", "--max-sessions", "0", "--max-memory-bytes",
                                "1GB", "--max-requests", "4", "--max-requests-per-second", "0.5"});
     EXPECT_EQ(std::get<KeyConfig>(all).quotas, (KeyQuotas{0, std::size_t{1} << 30, 4, 0.5}));
+    const Command others =
+        parse({"key", "add", "alice", "--max-history", "5", "--max-history-bytes", "1MB",
+               "--max-points", "7", "--max-profile-crossings", "9", "--max-queued-jobs", "0"});
+    EXPECT_EQ(std::get<KeyConfig>(others).quotas, (KeyQuotas{.max_history = 5,
+                                                             .max_history_bytes = 1U << 20,
+                                                             .max_points = 7,
+                                                             .max_profile_crossings = 9,
+                                                             .max_queued_jobs = 0}));
+    EXPECT_EQ(exit_code({"key", "add", "alice", "--max-history", "0"}), kExitUsage);
     for (const char* bad : {"-1", "many", "nan", ""}) {
         EXPECT_EQ(exit_code({"key", "add", "alice", "--max-sessions", bad}), kExitUsage) << bad;
         EXPECT_EQ(exit_code({"key", "add", "alice", "--max-requests-per-second", bad}), kExitUsage)

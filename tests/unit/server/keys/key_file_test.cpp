@@ -75,6 +75,8 @@ TEST(KeyFile, ReadsWhatItWrites) {
     EXPECT_NE(write_keys(keys).find("max_memory_bytes=8589934592 max_requests=0 "
                                     "max_requests_per_second=2.5\n"),
               std::string::npos);
+    EXPECT_EQ(keys_in(kLine + " max_history=1 max_queued_jobs=0\n").at(0).quotas,
+              (KeyQuotas{.max_history = 1, .max_queued_jobs = 0}));
     EXPECT_TRUE(keys_in("").empty());
     EXPECT_EQ(keys_in("\n  # a comment\n\t" + kLine + "  max_sessions=3\r\n").size(), 1U);
     EXPECT_EQ(keys_in(kLine).at(0).name, "alice") << "the last line may have no end";
@@ -110,7 +112,7 @@ TEST(KeyFile, RefusesTwoOfAKind) {
     EXPECT_EQ(faults_in(kLine + " max_sessions=1 max_sessions=2\n").size(), 1U);
     for (const char* bad : {"max_sessions=1.5", "max_sessions=", "max_sessions", "max_sessions=1x",
                             "max_requests_per_second=0", "max_requests_per_second=nan",
-                            "max_memory_bytes=1e300", "max_sessions=inf", "="})
+                            "max_memory_bytes=1e300", "max_sessions=inf", "=", "max_history=0"})
         EXPECT_EQ(faults_in(kLine + " " + bad + "\n").size(), 1U) << bad;
 }
 
