@@ -142,6 +142,30 @@ TEST(HttpServerAlone, CutsWhoReadsNothing) {
     EXPECT_TRUE(becomes([&] { return server.connections() == 0; }));
 }
 
+/// The library has its own mind about Expect, and another one in each release.
+TEST(HttpServerAlone, InvitesBodiesItself) {
+    ServerAtWork server({});
+    const auto post = [](const std::string& version, const std::string& expected) {
+        return "POST / HTTP/" + version +
+               "\r\nHost: x\r\nContent-Length: 2\r\nExpect: " + expected + "\r\n\r\n";
+    };
+    for (const char* expected : {"100-continue", "100-Continue"}) {
+        Client client(server.port());
+        client.send(post("1.1", expected));
+        EXPECT_EQ(client.read().status, 100) << expected;
+        client.send("{}");
+        EXPECT_EQ(client.read().status, 200) << expected;
+        Client older(server.port());
+        older.send(post("1.0", expected) + "{}");
+        EXPECT_EQ(older.read().status, 200) << expected << ", and nothing before";
+        EXPECT_TRUE(older.is_closed());
+    }
+    Client client(server.port());
+    client.send(post("1.1", "eggs"));
+    EXPECT_EQ(client.read().status, 417);
+    EXPECT_TRUE(client.is_closed());
+}
+
 TEST(HttpServerAlone, GoesOnAfterARequestWithoutMemory) {
     ServerAtWork server({});
     for (int i = 0; i < 100; ++i) {
