@@ -10,6 +10,7 @@
 #include "api/fault.hpp"
 #include "core/mesh/repair.hpp"
 #include "core/types/mesh_data.hpp"
+#include "core/types/post_grid.hpp"
 
 namespace tinsmith::api {
 
@@ -37,6 +38,8 @@ struct PointsPlace {
 /// A terrain as any reader delivers it: mesh buffers and what is known of their coordinates.
 struct Terrain {
     core::MeshData mesh;
+    /// In place of a mesh: posts whose triangles are not made yet (grid_mesh.hpp).
+    std::optional<core::PostGrid> grid;
     /// The mesh is vertices only, which are to be triangulated once they lie in a plan
     /// (points_mesh.hpp).
     std::optional<PointsPlace> points;

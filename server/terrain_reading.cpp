@@ -9,6 +9,7 @@
 #include "api/formats/csv.hpp"
 #include "api/formats/geotiff.hpp"
 #include "api/formats/glb_reader.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "api/formats/landxml_reader.hpp"
 #include "api/formats/obj_reader.hpp"
 #include "api/formats/points_mesh.hpp"
@@ -185,6 +186,16 @@ std::size_t bytes_to_build(const api::Terrain& terrain) {
     return kOfVertex * vertices + kOfTriangle * triangles;
 }
 
+/// What the readers said of the mesh is not needed any more.
+LoadedTerrain loaded(api::Terrain terrain, core::Tin tin) {
+    terrain.mesh = {};
+    terrain.grid.reset();
+    terrain.vertex_names = {};
+    terrain.vertex_place = {};
+    terrain.triangle_place = {};
+    return {std::move(terrain), std::move(tin)};
+}
+
 /// What the options ask for is mended; then the mesh is built.
 api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
                                  const api::TerrainOptions& options) {
@@ -212,11 +223,7 @@ api::Parsed<LoadedTerrain> built(api::Terrain terrain, TerrainFormat format,
         }
         return {kind, std::move(faults)};
     }
-    terrain.mesh = {};
-    terrain.vertex_names = {};
-    terrain.vertex_place = {};
-    terrain.triangle_place = {};
-    return LoadedTerrain{std::move(terrain), std::move(*tin)};
+    return loaded(std::move(terrain), std::move(*tin));
 }
 
 }  // namespace
@@ -256,6 +263,13 @@ api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat fo
     if (terrain) terrain = api::triangulated(*std::move(terrain), limits);
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
+    if (terrain->grid && !options.repair) {
+        auto tin = api::tin_of_grid(*terrain->grid, limits);
+        if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
+        if (tin) return loaded(std::move(*terrain), std::move(*tin));
+    }
+    terrain = api::meshed(std::move(terrain), limits);
+    if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     return built(std::move(*terrain), format, options);
 }
 

@@ -272,10 +272,8 @@ Parsed<Terrain> GridText::finish() {
         if (!warped) return {warped.kind(), std::move(warped.faults())};
         grid_ = *std::move(warped);
     }
-    auto mesh = mesh_of_grid(grid_, limits_);
-    if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
     Terrain terrain;
-    terrain.mesh = *std::move(mesh);
+    terrain.grid = std::move(grid_);
     terrain.crs = settled_.crs;
     terrain.unit = settled_.unit;
     terrain.settled = true;

@@ -79,9 +79,7 @@ class Raster {
             if (!warped) return {warped.kind(), std::move(warped.faults())};
             grid_ = *std::move(warped);
         }
-        auto mesh = mesh_of_grid(grid_, limits_);
-        if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
-        terrain_.mesh = std::move(*mesh);
+        terrain_.grid = std::move(grid_);
         return std::move(terrain_);
     }
 

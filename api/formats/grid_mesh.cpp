@@ -6,19 +6,16 @@
 #include <cstdint>
 #include <utility>
 
+#include "api/side_by_side.hpp"
+#include "core/mesh/grid_build.hpp"
+#include "core/mesh/grid_cell.hpp"
+
 namespace tinsmith::api {
 
 namespace {
 
-/// The four posts around one cell, by their compass corner, whatever way the grid is stored.
-///
-///     nw ----- ne
-///      |       |
-///     sw ----- se
-///
-struct Cell {
-    std::size_t sw, se, ne, nw;
-};
+/// The posts around one cell, by corner of the compass (core/mesh/grid_cell.hpp).
+using Cell = std::array<std::size_t, 4>;
 
 class Mesher {
   public:
@@ -35,10 +32,7 @@ class Mesher {
     }
 
     core::Point3 post(std::size_t at) const {
-        const auto column = static_cast<double>(at % grid_.columns);
-        const auto row = static_cast<double>(at / grid_.columns);
-        return {grid_.origin.x + column * grid_.dx, grid_.origin.y + row * grid_.dy,
-                grid_.elevations[at]};
+        return {grid_.x(at % grid_.columns), grid_.y(at / grid_.columns), grid_.elevations[at]};
     }
 
   private:
@@ -52,22 +46,11 @@ class Mesher {
 
     template <typename Each>
     void split(const Cell& cell, Each& each) const {
-        const double sw = grid_.elevations[cell.sw];
-        const double se = grid_.elevations[cell.se];
-        const double ne = grid_.elevations[cell.ne];
-        const double nw = grid_.elevations[cell.nw];
-        const int holes = std::isnan(sw) + std::isnan(se) + std::isnan(ne) + std::isnan(nw);
-        if (holes > 1) return;
-        if (std::isnan(sw)) return each(cell.se, cell.ne, cell.nw);
-        if (std::isnan(se)) return each(cell.sw, cell.ne, cell.nw);
-        if (std::isnan(ne)) return each(cell.sw, cell.se, cell.nw);
-        if (std::isnan(nw)) return each(cell.sw, cell.se, cell.ne);
-        if (std::fabs(sw - ne) <= std::fabs(se - nw)) {
-            each(cell.sw, cell.se, cell.ne);
-            each(cell.sw, cell.ne, cell.nw);
-        } else {
-            each(cell.sw, cell.se, cell.nw);
-            each(cell.se, cell.ne, cell.nw);
+        const auto z = [&](std::size_t corner) { return grid_.elevations[cell[corner]]; };
+        const auto& triangles = core::triangles_of(core::cut_of(z(0), z(1), z(2), z(3)));
+        for (unsigned i = 0; i < triangles.count; ++i) {
+            const auto [a, b, c] = core::kTriangleWithout[triangles.without[i]];
+            each(cell[a], cell[b], cell[c]);
         }
     }
 
@@ -156,6 +139,20 @@ Parsed<core::MeshData> mesh_of_grid(const Grid& grid, const ReadLimits& limits,
         mesh.triangles.push_back({vertex_of[a], vertex_of[b], vertex_of[c]});
     });
     return mesh;
+}
+
+Parsed<Terrain> meshed(Parsed<Terrain> terrain, const ReadLimits& limits) {
+    if (!terrain || !terrain->grid) return terrain;
+    auto mesh = mesh_of_grid(*terrain->grid, limits);
+    if (!mesh) return {mesh.kind(), std::move(mesh.faults())};
+    terrain->mesh = *std::move(mesh);
+    terrain->grid.reset();
+    return terrain;
+}
+
+std::optional<core::Tin> tin_of_grid(const Grid& grid, const ReadLimits& limits) {
+    if (refusal(grid, limits, "")) return std::nullopt;
+    return core::build_tin_of_grid(grid, limits.max_triangles, side_by_side);
 }
 
 }  // namespace tinsmith::api

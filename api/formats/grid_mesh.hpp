@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "api/fault.hpp"
 #include "api/formats/read_limits.hpp"
+#include "api/terrain.hpp"
+#include "core/mesh/tin.hpp"
 #include "core/types/mesh_data.hpp"
-#include "core/types/point.hpp"
+#include "core/types/post_grid.hpp"
 
 namespace tinsmith::api {
 
-/// A regular grid of elevations, row by row. The post in column c of row r lies at
-/// (origin.x + c * dx, origin.y + r * dy); dx and dy may be negative.
-struct Grid {
-    core::Point2 origin;  ///< where the first elevation is
-    double dx = 1.0;
-    double dy = 1.0;
-    std::size_t columns = 0;
-    std::size_t rows = 0;
-    std::vector<double> elevations;  ///< columns * rows; NaN: no data
-};
+using Grid = core::PostGrid;
 
 /// Triangulates a grid: two triangles in a cell whose four posts have data, one where exactly
 /// three have, none otherwise. The diagonal joins the two opposite posts that differ less in
@@ -34,5 +26,14 @@ struct Grid {
 /// Faults point below `pointer`, the grid's own place in the body.
 Parsed<core::MeshData> mesh_of_grid(const Grid& grid, const ReadLimits& limits,
                                     const std::string& pointer = "");
+
+/// Makes a terrain that is a grid the mesh of it; any other stays as it is.
+Parsed<Terrain> meshed(Parsed<Terrain> terrain, const ReadLimits& limits);
+
+/// The mesh that `core::build_tin` makes of those triangles, bit for bit, the short way
+/// (core/mesh/grid_build.hpp), on the machine's other processors, too. Nothing where either refuses
+/// the grid, and where the short way does not lead there: the long one says what is wrong.
+/// Requires: elevations.size() == columns * rows.
+std::optional<core::Tin> tin_of_grid(const Grid& grid, const ReadLimits& limits);
 
 }  // namespace tinsmith::api

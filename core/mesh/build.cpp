@@ -226,27 +226,14 @@ void TinBuilder::index() {
     index_hints();
 }
 
-/// About one hint for three triangles. Cells without a triangle's centroid take the hint before
-/// them.
 void TinBuilder::index_hints() {
-    const double cells = static_cast<double>(tin_.triangles_.size()) / 3.0;
-    const std::size_t columns = static_cast<std::size_t>(std::clamp(std::sqrt(cells), 1.0, 8192.0));
-    const Bounds& box = tin_.bounds_;
-    tin_.hint_columns_ = columns;
-    tin_.hint_origin_ = box.min.plan();
-    tin_.hints_per_x_ = static_cast<double>(columns) / (box.max.x - box.min.x);
-    tin_.hints_per_y_ = static_cast<double>(columns) / (box.max.y - box.min.y);
-    tin_.hints_.assign(columns * columns, {});
+    tin_.lay_out_hints();
     for (std::uint32_t t = 0; t < tin_.triangles_.size(); ++t) {
         const auto& [a, b, c] = tin_.triangles_[t].vertices;
         const Point2 p = tin_.plan(a), q = tin_.plan(b), r = tin_.plan(c);
         tin_.hints_[tin_.hint_cell({(p.x + q.x + r.x) / 3.0, (p.y + q.y + r.y) / 3.0})] = {t};
     }
-    TriangleId before{0};
-    for (TriangleId& hint : tin_.hints_) {
-        if (!hint.valid()) hint = before;
-        before = hint;
-    }
+    tin_.fill_hints();
 }
 
 Result<Tin> build_tin(const MeshData& data, const MeshNames& names) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <new>
+#include <type_traits>
 
 #include "core/mesh/large_blocks.hpp"
 
@@ -13,6 +14,8 @@ namespace tinsmith::core {
 /// Hands out memory that begins where a cache line does, so that slots of half a line never lie
 /// across two: on a mesh that is not in the cache each look would else cost a line and a half.
 /// Large meshes come to lie in large pages.
+/// Slots that are made without a value are not written: who makes them gives them one, so that a
+/// large mesh is written once.
 template <typename T>
 class LineAllocator {
   public:
@@ -39,6 +42,11 @@ class LineAllocator {
         char* whole = nullptr;
         std::memcpy(&whole, reinterpret_cast<char*>(memory) - sizeof(whole), sizeof(whole));
         ::operator delete(whole);
+    }
+
+    template <typename U>
+    void construct(U* /*slot*/) {
+        static_assert(std::is_trivially_copyable_v<U> && std::is_trivially_destructible_v<U>);
     }
 
     friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }

@@ -2,6 +2,7 @@
 #include "core/mesh/tin.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/mesh/large_pages.hpp"
@@ -45,10 +46,32 @@ BoundaryIndex Tin::index_boundary() const {
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
         for (unsigned i = 0; i < 3; ++i)
             if (!triangles_[t].twins[i].valid()) boundary.push_back({{t}, i});
-    BoundaryIndex index(bounds_.min.plan(), bounds_.max.plan(), boundary.size());
-    for (const Side s : boundary)
+    return index_boundary(boundary);
+}
+
+BoundaryIndex Tin::index_boundary(std::span<const Side> sides) const {
+    BoundaryIndex index(bounds_.min.plan(), bounds_.max.plan(), sides.size());
+    for (const Side s : sides)
         index.add(origin(s), plan(origin(s)), plan(destination(s)));
     return index;
+}
+
+void Tin::lay_out_hints() {
+    const double cells = static_cast<double>(triangles_.size()) / 3.0;
+    const std::size_t columns = static_cast<std::size_t>(std::clamp(std::sqrt(cells), 1.0, 8192.0));
+    hint_columns_ = columns;
+    hint_origin_ = bounds_.min.plan();
+    hints_per_x_ = static_cast<double>(columns) / (bounds_.max.x - bounds_.min.x);
+    hints_per_y_ = static_cast<double>(columns) / (bounds_.max.y - bounds_.min.y);
+    hints_.assign(columns * columns, {});
+}
+
+void Tin::fill_hints() {
+    TriangleId before{0};
+    for (TriangleId& hint : hints_) {
+        if (!hint.valid()) hint = before;
+        before = hint;
+    }
 }
 
 MeshData Tin::to_data() const {

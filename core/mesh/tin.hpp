@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/mesh/boundary_index.hpp"
@@ -176,16 +177,25 @@ class Tin {
     void reserve_growth(std::size_t vertices, std::size_t triangles);
 
     BoundaryIndex index_boundary() const;
+    /// Of these sides, which are all that have no twin, in order.
+    BoundaryIndex index_boundary(std::span<const Side> sides) const;
+    /// About one hint for three triangles, over the bounds; none is there yet.
+    void lay_out_hints();
+    /// Cells without a triangle's centroid take the hint before them.
+    void fill_hints();
 
     std::size_t hint_cell(Point2 p) const {
-        const auto cell = [last = static_cast<double>(hint_columns_ - 1)](double place) {
-            return static_cast<std::size_t>(place > 0.0 ? std::min(last, place) : 0.0);
-        };
-        return cell((p.y - hint_origin_.y) * hints_per_y_) * hint_columns_ +
-               cell((p.x - hint_origin_.x) * hints_per_x_);
+        return hint_row(p.y) * hint_columns_ + hint_column(p.x);
+    }
+    std::size_t hint_row(double y) const { return hint_of((y - hint_origin_.y) * hints_per_y_); }
+    std::size_t hint_column(double x) const { return hint_of((x - hint_origin_.x) * hints_per_x_); }
+    std::size_t hint_of(double place) const {
+        const double last = static_cast<double>(hint_columns_ - 1);
+        return static_cast<std::size_t>(place > 0.0 ? std::min(last, place) : 0.0);
     }
 
     friend class TinBuilder;
+    friend class GridBuilder;
     friend class Surgery;
     friend class Removal;
     friend struct TinState;

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "api/formats/geotiff.hpp"
-#include "core/mesh/build.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "core/mesh/large_blocks.hpp"
 #include "tests/bench/dem.hpp"
 #include "tests/bench/timing.hpp"
@@ -39,8 +39,8 @@ core::Tin ready_to_edit(const std::string& path) {
     limits.max_vertices = limits.max_triangles = 50'000'000;
     auto terrain = api::read_geotiff(bytes_of_file(path), limits, {});
     if (!terrain) throw std::runtime_error(terrain.faults().front().detail);
-    auto tin = core::build_tin(terrain->mesh);
-    if (!tin) throw std::runtime_error(tin.errors().front().detail);
+    auto tin = api::tin_of_grid(*terrain->grid, limits);
+    if (!tin) throw std::runtime_error("the grid is no mesh");
     return std::move(*tin);
 }
 
