@@ -14,6 +14,7 @@
 #include "api/formats/obj_reader.hpp"
 #include "api/formats/points_mesh.hpp"
 #include "api/formats/terrain_json.hpp"
+#include "api/side_by_side.hpp"
 #include "api/terrain_system.hpp"
 #include "core/mesh/build.hpp"
 #include "core/mesh/repair.hpp"
@@ -264,7 +265,7 @@ api::Parsed<LoadedTerrain> load_terrain(std::string_view bytes, TerrainFormat fo
     if (!terrain) return {terrain.kind(), std::move(terrain.faults())};
     begin_stage(0.6);
     if (terrain->grid && !options.repair) {
-        auto tin = api::tin_of_grid(*terrain->grid, limits);
+        auto tin = api::tin_of_grid(*terrain->grid, limits, api::side_by_side);
         if (told_to_stop()) return {api::FaultKind::Stopped, api::reading_stopped()};
         if (tin) return loaded(std::move(*terrain), std::move(*tin));
     }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "api/side_by_side.hpp"
 #include "core/mesh/grid_build.hpp"
 #include "core/mesh/grid_cell.hpp"
 
@@ -150,9 +149,10 @@ Parsed<Terrain> meshed(Parsed<Terrain> terrain, const ReadLimits& limits) {
     return terrain;
 }
 
-std::optional<core::Tin> tin_of_grid(const Grid& grid, const ReadLimits& limits) {
+std::optional<core::Tin> tin_of_grid(const Grid& grid, const ReadLimits& limits,
+                                     const core::Executor& execute) {
     if (refusal(grid, limits, "")) return std::nullopt;
-    return core::build_tin_of_grid(grid, limits.max_triangles, side_by_side);
+    return core::build_tin_of_grid(grid, limits.max_triangles, execute);
 }
 
 }  // namespace tinsmith::api

@@ -8,6 +8,7 @@
 #include "api/formats/read_limits.hpp"
 #include "api/terrain.hpp"
 #include "core/mesh/tin.hpp"
+#include "core/types/executor.hpp"
 #include "core/types/mesh_data.hpp"
 #include "core/types/post_grid.hpp"
 
@@ -31,9 +32,10 @@ Parsed<core::MeshData> mesh_of_grid(const Grid& grid, const ReadLimits& limits,
 Parsed<Terrain> meshed(Parsed<Terrain> terrain, const ReadLimits& limits);
 
 /// The mesh that `core::build_tin` makes of those triangles, bit for bit, the short way
-/// (core/mesh/grid_build.hpp), on the machine's other processors, too. Nothing where either refuses
-/// the grid, and where the short way does not lead there: the long one says what is wrong.
+/// (core/mesh/grid_build.hpp). Nothing where either refuses the grid, and where the short way does
+/// not lead there: the long one says what is wrong.
 /// Requires: elevations.size() == columns * rows.
-std::optional<core::Tin> tin_of_grid(const Grid& grid, const ReadLimits& limits);
+std::optional<core::Tin> tin_of_grid(const Grid& grid, const ReadLimits& limits,
+                                     const core::Executor& execute = core::one_after_another);
 
 }  // namespace tinsmith::api

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A grid of elevations from its GeoTIFF to a mesh that can be edited, against what no program can
 // leave out: reading the file, and writing as many bytes as the finished mesh has into memory that
-// was not used before. README.md in this folder says what came out. One thread, wall time: half of
-// it is the system's handing out of pages.
+// was not used before. README.md in this folder says what came out. Wall time: half of it is the
+// system's handing out of pages.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +16,7 @@
 #include "tests/bench/dem.hpp"
 #include "tests/bench/timing.hpp"
 #include "tests/bench/turns.hpp"
+#include "tests/bench/two_processors.hpp"
 
 namespace tinsmith::bench {
 namespace {
@@ -34,12 +35,12 @@ std::string bytes_of_file(const std::string& path) {
     return bytes;
 }
 
-core::Tin ready_to_edit(const std::string& path) {
+core::Tin ready_to_edit(const std::string& path, const core::Executor& execute) {
     api::ReadLimits limits;
     limits.max_vertices = limits.max_triangles = 50'000'000;
     auto terrain = api::read_geotiff(bytes_of_file(path), limits, {});
     if (!terrain) throw std::runtime_error(terrain.faults().front().detail);
-    auto tin = api::tin_of_grid(*terrain->grid, limits);
+    auto tin = api::tin_of_grid(*terrain->grid, limits, execute);
     if (!tin) throw std::runtime_error("the grid is no mesh");
     return std::move(*tin);
 }
@@ -55,7 +56,7 @@ void read_and_write(const std::string& path, std::size_t bytes) {
 int run(std::size_t triangles, int runs) {
     const std::string path = "dem_bench.tif";
     const std::size_t written = write_dem(path, triangles);
-    const core::Tin tin = ready_to_edit(path);
+    const core::Tin tin = ready_to_edit(path, core::one_after_another);
     std::printf(
         "%zu triangles, %.1f bytes each\n", tin.triangle_count(),
         static_cast<double>(tin.memory_bytes()) / static_cast<double>(tin.triangle_count()));
@@ -68,11 +69,14 @@ int run(std::size_t triangles, int runs) {
             return wall_ms() - start;
         };
     };
-    const Turns turns = take_turns(
-        {timed([&] { ready_to_edit(path); }), timed([&] { read_and_write(path, bytes); })}, runs);
-    std::printf("| Tinsmith ms | read and write ms | ratio |\n|--:|--:|--:|\n| %s | %s | %s |\n",
-                milliseconds(turns[0]).c_str(), milliseconds(turns[1]).c_str(),
-                ratio(turns[0], turns[1]).c_str());
+    const Turns turns = take_turns({timed([&] { ready_to_edit(path, core::one_after_another); }),
+                                    timed([&] { ready_to_edit(path, on_two_processors); }),
+                                    timed([&] { read_and_write(path, bytes); })},
+                                   runs);
+    std::printf("| threads | Tinsmith ms | read and write ms | ratio |\n|--:|--:|--:|--:|\n");
+    for (std::size_t i = 0; i < 2; ++i)
+        std::printf("| %zu | %s | %s | %s |\n", i + 1, milliseconds(turns[i]).c_str(),
+                    milliseconds(turns[2]).c_str(), ratio(turns[i], turns[2]).c_str());
     return EXIT_SUCCESS;
 }
 

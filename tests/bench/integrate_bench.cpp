@@ -11,6 +11,7 @@
 
 #include "api/formats/geojson.hpp"
 #include "api/formats/geotiff.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
 
@@ -30,7 +31,7 @@ double now_ms() {
 
 int main() {
     using namespace tinsmith;
-    const auto terrain = api::read_geotiff(read_data("jacksboro.tif"), {});
+    const auto terrain = api::meshed(api::read_geotiff(read_data("jacksboro.tif"), {}), {});
     if (!terrain) return 1;
     auto built = core::build_tin(terrain->mesh);
     if (!built) return 1;

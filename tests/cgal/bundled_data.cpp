@@ -7,6 +7,7 @@
 
 #include "api/formats/geojson.hpp"
 #include "api/formats/geotiff.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "core/mesh/surface.hpp"
 #include "core/mesh/walk.hpp"
 
@@ -23,7 +24,7 @@ std::string read_data(const std::string& name) {
 }  // namespace
 
 core::MeshData bundled_terrain() {
-    auto read = api::read_geotiff(read_data("jacksboro.tif"), {});
+    auto read = api::meshed(api::read_geotiff(read_data("jacksboro.tif"), {}), {});
     if (!read) throw std::runtime_error("the bundled terrain is refused");
     return std::move(read->mesh);
 }

@@ -14,6 +14,7 @@
 
 #include "api/formats/ascii_grid.hpp"
 #include "api/formats/geotiff.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "tests/gdal/gdal_programs.hpp"
 
 namespace tinsmith {
@@ -90,7 +91,7 @@ void expect_same(const core::MeshData& mesh, const Posts& posts, double toleranc
 }
 
 api::Terrain read_tiff(const std::string& bytes, const api::TerrainOptions& options = {}) {
-    auto terrain = api::read_geotiff(bytes, {}, options);
+    auto terrain = api::meshed(api::read_geotiff(bytes, {}, options), {});
     if (terrain) return *std::move(terrain);
     ADD_FAILURE() << terrain.faults()[0].code << ": " << terrain.faults()[0].detail;
     return {};
@@ -146,7 +147,8 @@ TEST(Rasters, AsTextWithAllDigits) {
         shop.run("gdal_translate -of AAIGrid " + std::string(way) + " " + kTerrain + " out.asc");
         api::TerrainOptions options;
         options.crs = "EPSG:32616";
-        const auto terrain = api::read_ascii_grid(shop.read("out.asc"), options, {});
+        const auto terrain =
+            api::meshed(api::read_ascii_grid(shop.read("out.asc"), options, {}), {});
         ASSERT_TRUE(terrain) << terrain.faults()[0].detail;
         EXPECT_EQ(terrain->crs, "EPSG:32616");
         expect_same(terrain->mesh, posts_by_gdal(shop.path("out.asc")), 1e-4, 200);

@@ -16,6 +16,7 @@
 
 #include "api/formats/geojson.hpp"
 #include "api/formats/geotiff.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "core/edit/cutout.hpp"
 #include "core/edit/spot.hpp"
 #include "core/edit/volume.hpp"
@@ -33,7 +34,7 @@ std::string read_data(const std::string& name) {
 
 const core::Tin& terrain() {
     static const core::Tin tin = [] {
-        auto read = api::read_geotiff(read_data("jacksboro.tif"), {});
+        auto read = api::meshed(api::read_geotiff(read_data("jacksboro.tif"), {}), {});
         return std::move(*core::build_tin(read->mesh));
     }();
     return tin;

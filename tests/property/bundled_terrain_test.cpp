@@ -9,6 +9,7 @@
 
 #include "api/formats/geojson.hpp"
 #include "api/formats/geotiff.hpp"
+#include "api/formats/grid_mesh.hpp"
 #include "core/integrate/integrator.hpp"
 #include "core/mesh/build.hpp"
 #include "tests/support/guarantees.hpp"
@@ -24,7 +25,7 @@ std::string read_data(const std::string& name) {
 
 const core::MeshData& terrain() {
     static const core::MeshData mesh = [] {
-        auto read = api::read_geotiff(read_data("jacksboro.tif"), {});
+        auto read = api::meshed(api::read_geotiff(read_data("jacksboro.tif"), {}), {});
         return read ? std::move(read->mesh) : core::MeshData{};
     }();
     return mesh;

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "api/formats/grid_mesh.hpp"
+
 namespace tinsmith::api {
 namespace {
 
@@ -15,7 +17,7 @@ using core::Point3;
 const std::string kHeader = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\n";
 
 Terrain read(const std::string& text, const TerrainOptions& options = {}) {
-    auto terrain = read_ascii_grid(text, options, {});
+    auto terrain = meshed(read_ascii_grid(text, options, {}), {});
     if (terrain) return *std::move(terrain);
     ADD_FAILURE() << terrain.faults()[0].code << ": " << terrain.faults()[0].detail;
     return {};
@@ -23,7 +25,7 @@ Terrain read(const std::string& text, const TerrainOptions& options = {}) {
 
 std::string refused(const std::string& text, const ReadLimits& limits = {},
                     const TerrainOptions& options = {}) {
-    const auto terrain = read_ascii_grid(text, options, limits);
+    const auto terrain = meshed(read_ascii_grid(text, options, limits), limits);
     if (terrain) return "taken";
     std::string all;
     for (const Fault& fault : terrain.faults())

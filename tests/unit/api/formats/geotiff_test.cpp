@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "api/formats/grid_mesh.hpp"
 #include "tests/unit/api/formats/tiff_bytes.hpp"
 
 #if defined(__SANITIZE_THREAD__)
@@ -27,6 +28,12 @@ namespace {
 using core::Point3;
 using testing::TiffBytes;
 
+/// As the server reads it that has to mend it, for the triangles.
+Parsed<Terrain> read_mesh(std::string_view bytes, const ReadLimits& limits,
+                          const TerrainOptions& options = {}) {
+    return meshed(read_geotiff(bytes, limits, options), limits);
+}
+
 TiffBytes three_by_two() {
     return TiffBytes(3, 2, {1.5F, 2, 3, 4, 5, 6.25F}).place(500000, 4000000, 10, 10);
 }
@@ -34,7 +41,7 @@ TiffBytes three_by_two() {
 void expect_fault(const std::string& bytes, FaultKind kind, const std::string& code,
                   const ReadLimits& limits = {}) {
     ::testing::internal::CaptureStderr();
-    const auto terrain = read_geotiff(bytes, limits);
+    const auto terrain = read_mesh(bytes, limits);
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     ASSERT_FALSE(terrain.ok()) << "expected " << code;
     EXPECT_EQ(terrain.kind(), kind);
@@ -44,7 +51,7 @@ void expect_fault(const std::string& bytes, FaultKind kind, const std::string& c
 }
 
 TEST(GeoTiff, PostsLieAtPixelCentres) {
-    const auto terrain = read_geotiff(three_by_two().projected(32616).bytes(), {});
+    const auto terrain = read_mesh(three_by_two().projected(32616).bytes(), {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->crs, "EPSG:32616");
     EXPECT_EQ(terrain->unit, "metre");
@@ -76,10 +83,10 @@ std::string masked(std::string bytes, std::uint32_t width, const std::string& ro
 
 TEST(GeoTiff, WhatAMaskHidesIsNoData) {
     const std::string bytes = three_by_two().bytes();
-    const auto all = read_geotiff(masked(bytes, 3, "\xe0\xe0"), {});
+    const auto all = read_mesh(masked(bytes, 3, "\xe0\xe0"), {});
     ASSERT_TRUE(all.ok()) << all.faults()[0].detail;
     EXPECT_EQ(all->mesh.triangles.size(), 4U);
-    const auto some = read_geotiff(masked(bytes, 3, "\xc0\xe0"), {});
+    const auto some = read_mesh(masked(bytes, 3, "\xc0\xe0"), {});
     ASSERT_TRUE(some.ok()) << some.faults()[0].detail;
     EXPECT_EQ(some->mesh.vertices.size(), 5U) << "without the last of the first row";
     EXPECT_EQ(some->mesh.triangles.size(), 3U);
@@ -88,21 +95,21 @@ TEST(GeoTiff, WhatAMaskHidesIsNoData) {
 TEST(GeoTiff, PixelIsPointNamesTheCentreItself) {
     TiffBytes tiff(2, 2, {1, 2, 3, 4});
     const auto terrain =
-        read_geotiff(tiff.place(500000, 4000000, 10, 10, true).projected(32616).bytes(), {});
+        read_mesh(tiff.place(500000, 4000000, 10, 10, true).projected(32616).bytes(), {});
     ASSERT_TRUE(terrain.ok());
     EXPECT_EQ(terrain->mesh.vertices[0], (Point3{500000, 4000000, 1}));
     EXPECT_EQ(terrain->mesh.vertices[3], (Point3{500010, 3999990, 4}));
 }
 
 TEST(GeoTiff, WithoutReferenceSystemTheNameIsEmpty) {
-    const auto terrain = read_geotiff(three_by_two().bytes(), {});
+    const auto terrain = read_mesh(three_by_two().bytes(), {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->crs, "");
     EXPECT_EQ(terrain->unit, "metre");
 }
 
 TEST(GeoTiff, FeetAreNamed) {
-    const auto terrain = read_geotiff(three_by_two().projected(2264).bytes(), {});
+    const auto terrain = read_mesh(three_by_two().projected(2264).bytes(), {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->unit, "US survey foot");
     EXPECT_EQ(terrain->crs, "EPSG:2264");
@@ -112,16 +119,16 @@ const std::string kFootBand =
     R"(<GDALMetadata><Item name="UNITTYPE" sample="0" role="unittype">ft</Item></GDALMetadata>)";
 
 TEST(GeoTiff, ElevationsOfAnotherUnitBecomeOnesOfThePlans) {
-    const auto terrain = read_geotiff(three_by_two().vertical(6360).bytes(), {});
+    const auto terrain = read_mesh(three_by_two().vertical(6360).bytes(), {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->unit, "metre");
     EXPECT_NEAR(terrain->mesh.vertices[5].z, 6.25 * 1200 / 3937, 1e-14);
     const auto band =
-        read_geotiff(three_by_two().projected(32616).set_text(42112, kFootBand).bytes(), {});
+        read_mesh(three_by_two().projected(32616).set_text(42112, kFootBand).bytes(), {});
     ASSERT_TRUE(band.ok()) << band.faults()[0].detail;
     EXPECT_NEAR(band->mesh.vertices[5].z, 6.25 * 0.3048, 1e-15);
     // A plan without a system is in the unit of the elevations.
-    const auto alone = read_geotiff(three_by_two().set_text(42112, kFootBand).bytes(), {});
+    const auto alone = read_mesh(three_by_two().set_text(42112, kFootBand).bytes(), {});
     ASSERT_TRUE(alone.ok()) << alone.faults()[0].detail;
     EXPECT_EQ(alone->unit, "foot");
     EXPECT_EQ(alone->mesh.vertices[5].z, 6.25);
@@ -130,11 +137,11 @@ TEST(GeoTiff, ElevationsOfAnotherUnitBecomeOnesOfThePlans) {
 TEST(GeoTiff, OptionsNameWhatTheFileDoesNot) {
     TerrainOptions options;
     options.crs = "EPSG:2264";
-    const auto named = read_geotiff(three_by_two().bytes(), {}, options);
+    const auto named = read_mesh(three_by_two().bytes(), {}, options);
     ASSERT_TRUE(named.ok()) << named.faults()[0].detail;
     EXPECT_EQ(named->crs, "EPSG:2264");
     EXPECT_EQ(named->unit, "US survey foot");
-    const auto other = read_geotiff(three_by_two().projected(32616).bytes(), {}, options);
+    const auto other = read_mesh(three_by_two().projected(32616).bytes(), {}, options);
     ASSERT_FALSE(other.ok());
     EXPECT_EQ(other.faults()[0].code, "CONTRADICTION");
     EXPECT_EQ(other.faults()[0].parameter, "crs");
@@ -145,7 +152,7 @@ TEST(GeoTiff, DegreesAreWarpedWhereProjectSaysSo) {
     tiff.place(-84.1, 36.4, 0.001, 0.001).geographic(4326).set_text(42112, kFootBand);
     TerrainOptions options;
     options.project = "auto";
-    const auto zone = read_geotiff(tiff.bytes(), {}, options);
+    const auto zone = read_mesh(tiff.bytes(), {}, options);
     ASSERT_TRUE(zone.ok()) << zone.faults()[0].detail;
     EXPECT_EQ(zone->crs, "EPSG:32616");
     EXPECT_TRUE(zone->settled);
@@ -154,21 +161,21 @@ TEST(GeoTiff, DegreesAreWarpedWhereProjectSaysSo) {
         EXPECT_LE(p.z, 4 * 0.3048 + 1e-9);
     }
     options.project = "EPSG:2274";
-    const auto feet = read_geotiff(tiff.bytes(), {}, options);
+    const auto feet = read_mesh(tiff.bytes(), {}, options);
     ASSERT_TRUE(feet.ok()) << feet.faults()[0].detail;
     EXPECT_EQ(feet->unit, "US survey foot");
     options.project = "EPSG:999999";
-    EXPECT_EQ(read_geotiff(tiff.bytes(), {}, options).faults().at(0).code, "CRS_UNKNOWN");
+    EXPECT_EQ(read_mesh(tiff.bytes(), {}, options).faults().at(0).code, "CRS_UNKNOWN");
     options.project = "EPSG:31370";  // Belgium
-    EXPECT_EQ(read_geotiff(tiff.bytes(), {}, options).faults().at(0).code, "CRS_OUT_OF_AREA");
+    EXPECT_EQ(read_mesh(tiff.bytes(), {}, options).faults().at(0).code, "CRS_OUT_OF_AREA");
     options.project = "auto";
-    const auto polar = read_geotiff(tiff.place(10, 88, 0.001, 0.001).bytes(), {}, options);
+    const auto polar = read_mesh(tiff.place(10, 88, 0.001, 0.001).bytes(), {}, options);
     ASSERT_FALSE(polar.ok());
     EXPECT_EQ(polar.faults()[0].code, "PROJECT_POLAR");
     ReadLimits few;
     few.max_vertices = 16;
     options.project = "EPSG:3413";  // north is not up there
-    const auto many = read_geotiff(tiff.place(10, 70, 0.001, 0.001).bytes(), few, options);
+    const auto many = read_mesh(tiff.place(10, 70, 0.001, 0.001).bytes(), few, options);
     ASSERT_FALSE(many.ok());
     EXPECT_EQ(many.faults()[0].code, "TOO_MANY_VERTICES");
 }
@@ -184,14 +191,14 @@ TEST(GeoTiff, NoDataIsAHole) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     TiffBytes tiff(3, 2, {1, 2, nan, 4, 5, -9999.9F});
     const auto terrain =
-        read_geotiff(tiff.place(0, 20, 10, 10).set_text(42113, "-9999.9").bytes(), {});
+        read_mesh(tiff.place(0, 20, 10, 10).set_text(42113, "-9999.9").bytes(), {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->mesh.vertices.size(), 4U);
     EXPECT_EQ(terrain->mesh.triangles.size(), 2U);
 }
 
 TEST(GeoTiff, ScaleAndOffsetAreApplied) {
-    const auto terrain = read_geotiff(
+    const auto terrain = read_mesh(
         three_by_two()
             .set_text(42112,
                       "<GDALMetadata><Item name=\"OFFSET\" sample=\"0\" role=\"offset\">100</Item>"
@@ -223,7 +230,7 @@ TEST(GeoTiff, WhatIsNotTakenIsNamed) {
 
 TEST(GeoTiff, UndeclaredNoDataIsToldWithItsPlace) {
     TiffBytes tiff(2, 2, {1, 2, -3.4e38F, 4});
-    const auto terrain = read_geotiff(tiff.place(0, 20, 10, 10).bytes(), {});
+    const auto terrain = read_mesh(tiff.place(0, 20, 10, 10).bytes(), {});
     ASSERT_FALSE(terrain.ok());
     EXPECT_EQ(terrain.faults()[0].code, "COORDINATE_OUT_OF_RANGE");
     EXPECT_EQ(terrain.faults()[0].coordinate, (std::array<double, 2>{5, 5}));
@@ -257,10 +264,10 @@ TEST(GeoTiff, LyingHeaders) {
 
 TEST(GeoTiff, TruncatedAnywhere) {
     const std::string whole = three_by_two().projected(32616).bytes();
-    ASSERT_TRUE(read_geotiff(whole, {}).ok());
+    ASSERT_TRUE(read_mesh(whole, {}).ok());
     for (std::size_t length = 0; length + 4 < whole.size(); ++length) {
         ::testing::internal::CaptureStderr();
-        const auto terrain = read_geotiff(std::string_view(whole).substr(0, length), {});
+        const auto terrain = read_mesh(std::string_view(whole).substr(0, length), {});
         EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
         ASSERT_FALSE(terrain.ok()) << length;
     }
@@ -273,7 +280,7 @@ TEST(GeoTiff, AUnitThatProjDoesNotKnowIsNoLineOnStderr) {
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     ASSERT_FALSE(bytes.empty());
     ::testing::internal::CaptureStderr();
-    const auto terrain = read_geotiff(bytes, {});
+    const auto terrain = read_mesh(bytes, {});
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     ASSERT_FALSE(terrain.ok());
     EXPECT_EQ(terrain.faults()[0].code, "COORDINATE_OUT_OF_RANGE");
@@ -287,7 +294,7 @@ TEST(GeoTiff, AnyByteChangedIsATerrainOrAFault) {
         for (const char value : {'\0', '\1', '\x7f', '\xff'}) {
             std::string bytes = whole;
             bytes[at] = value;
-            const auto terrain = read_geotiff(bytes, limits);
+            const auto terrain = read_mesh(bytes, limits);
             if (!terrain.ok()) {
                 EXPECT_FALSE(terrain.faults().empty());
             }
@@ -324,7 +331,7 @@ TEST(GeoTiff, SeveralThreadsAtOnce) {
     for (std::size_t i = 0; i < good.size(); ++i) {
         threads.emplace_back([&, i] {
             for (int round = 0; round < 20; ++round)
-                good[i] += read_geotiff(bytes, {}).ok();
+                good[i] += read_mesh(bytes, {}).ok();
         });
     }
     threads.clear();
@@ -338,7 +345,7 @@ TEST(GeoTiff, TheBundledTerrain) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream bytes;
     bytes << file.rdbuf();
-    const auto terrain = read_geotiff(bytes.str(), {});
+    const auto terrain = read_mesh(bytes.str(), {});
     ASSERT_TRUE(terrain.ok()) << terrain.faults()[0].detail;
     EXPECT_EQ(terrain->unit, "metre");
     EXPECT_NE(terrain->crs, "");
