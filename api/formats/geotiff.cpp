@@ -94,7 +94,7 @@ class Raster {
     std::optional<Refused> check_blocks() const;
     CPLErr mask_rows(int row, int rows, double* elevations);
     std::optional<Refused> convert();
-    bool is_no_data(double value) const;
+    std::array<double, 2> no_data_values() const;
 
     GDALDatasetH dataset_;
     const TerrainOptions& options_;
@@ -303,16 +303,13 @@ std::optional<Refused> Raster::read_elevations() {
     return convert();
 }
 
-bool Raster::is_no_data(double value) const {
-    if (std::isnan(value)) return true;
-    if (!no_data_) return false;
-    // The value is written as text: in a band of floats -9999.9 means the nearest float.
-    if (GDALGetRasterDataType(band_) == GDT_Float32) {
-        const double limit = std::numeric_limits<float>::max();
-        const double nearest = std::clamp(*no_data_, -limit, limit);
-        return value == static_cast<double>(static_cast<float>(nearest)) || value == *no_data_;
-    }
-    return value == *no_data_;
+/// The values that mean no data, both the same where there is one: the value is written as text,
+/// and in a band of floats -9999.9 means the nearest float, too. NaN where there is none.
+std::array<double, 2> Raster::no_data_values() const {
+    const double exact = no_data_.value_or(std::numeric_limits<double>::quiet_NaN());
+    if (GDALGetRasterDataType(band_) != GDT_Float32) return {exact, exact};
+    const double limit = std::numeric_limits<float>::max();
+    return {exact, static_cast<double>(static_cast<float>(std::clamp(exact, -limit, limit)))};
 }
 
 std::optional<Refused> Raster::convert() {
@@ -320,11 +317,12 @@ std::optional<Refused> Raster::convert() {
     const double offset = GDALGetRasterOffset(band_, nullptr);
     const bool scaled = scale != 1.0 || offset != 0.0;
     const bool other_unit = settled_.elevation_factor != 1.0;
+    const auto [no_data, nearest] = no_data_values();
     std::size_t wild = 0;
     std::size_t first_wild = 0;
     for (std::size_t i = 0; i < grid_.elevations.size(); ++i) {
         double& elevation = grid_.elevations[i];
-        if (is_no_data(elevation)) {
+        if (std::isnan(elevation) || elevation == no_data || elevation == nearest) {
             elevation = std::numeric_limits<double>::quiet_NaN();
             continue;
         }

@@ -2,7 +2,9 @@
 #include "core/mesh/grid_builder.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
 
 #include "core/types/range.hpp"
 
@@ -32,16 +34,17 @@ std::vector<double> positions(std::size_t count, double step, At at) {
     return found;
 }
 
-/// Whether all are such as the core takes, or NaN.
-bool are_sound(const double* elevations, std::ptrdiff_t count) {
-    bool sound = true;
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-        const double magnitude = std::fabs(elevations[i]);
-        const bool too_large = magnitude > kCoordinateLimit;
-        const bool too_small = magnitude < kCoordinateFloor && magnitude != 0.0;
-        sound &= !(too_large | too_small);
-    }
-    return sound;
+/// Whether all are such as the core takes, or NaN. Nearly always they are no zeros either, which
+/// one comparison of their bits tells.
+bool are_sound(std::span<const double> elevations) {
+    constexpr auto low = std::bit_cast<std::uint64_t>(kCoordinateFloor);
+    constexpr auto high = std::bit_cast<std::uint64_t>(kCoordinateLimit);
+    bool are_plain = true;
+    for (const double z : elevations)
+        are_plain &= (std::bit_cast<std::uint64_t>(z) << 1 >> 1) - low <= high - low;
+    return are_plain || std::all_of(elevations.begin(), elevations.end(), [](double z) {
+               return std::isnan(z) || in_coordinate_range(z);
+           });
 }
 
 }  // namespace
@@ -116,21 +119,24 @@ void GridBuilder::cut(Band& band) {
     const double* const elevations = grid_.elevations.data();
     const std::ptrdiff_t posts = columns_ + 1;
     for (std::ptrdiff_t row = band.begin; row < band.end_of_posts; ++row)
-        band.is_sound &= are_sound(elevations + row * posts, posts);
+        band.is_sound &= are_sound({elevations + row * posts, grid_.columns});
     std::array<std::ptrdiff_t, 4> corner{};
     for (unsigned i = 0; i < 4; ++i) {
         const GridPlace post = compass_.post({}, i);
         corner[i] = post.row * posts + post.column;
     }
+    std::size_t triangles = 0;
     for (std::ptrdiff_t row = band.begin; row < band.end; ++row) {
         const double* const first = elevations + row * posts;
         CellCut* const cuts = cuts_.row(row);
         for (std::ptrdiff_t c = 0; c < columns_; ++c) {
             const double* const at = first + c;
-            cuts[c] = cut_of(at[corner[0]], at[corner[1]], at[corner[2]], at[corner[3]]);
-            band.triangles += triangles_of(cuts[c]).count;
+            const CellCut cut = cut_of(at[corner[0]], at[corner[1]], at[corner[2]], at[corner[3]]);
+            cuts[c] = cut;
+            triangles += cut >= CellCut::Rising ? 2 : cut != CellCut::None ? 1 : 0;
         }
     }
+    band.triangles = triangles;
 }
 
 /// Where posts are missing, triangles and vertices are counted from the first on. Gives how many

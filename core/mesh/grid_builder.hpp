@@ -68,7 +68,8 @@ class GridBuilder {
         }
     };
     using Cell = std::array<Tin::Triangle, 2>;
-    using Pattern = std::array<std::uint64_t, sizeof(Cell) / sizeof(std::uint64_t)>;
+    using Words = std::array<std::uint64_t, sizeof(Tin::Triangle) / sizeof(std::uint64_t)>;
+    using Pattern = std::array<Words, 2>;
     /// Where the hints are that triangles fall into, by the corner that they are without.
     using HintPlaces = std::array<std::uint32_t, 4>;
 

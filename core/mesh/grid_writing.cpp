@@ -83,22 +83,26 @@ void GridBuilder::write_inner_cells(GridPlace first, std::ptrdiff_t end) {
         patterns[i] = std::bit_cast<Pattern>(triangles_in(first, cut_by(1), across));
     }
     // From cell to cell: a vertex, and two triangles of four sides each, further on. No number ever
-    // grows out of its half.
+    // grows out of its half. Word by word: what was written in halves cannot be read as a whole at
+    // once.
     Tin::Triangle step{{VertexId{1}, VertexId{1}, VertexId{1}}, {}, {2}, 0};
     step.twins.fill(Side({2}, 0));
-    const auto steps = std::bit_cast<Pattern>(Cell{step, step});
-    Pattern gone{};
+    const auto steps = std::bit_cast<Words>(step);
+    Words gone{};
     const CellCut* const cuts = cuts_.row(row);
-    Tin::Triangle* to = &tin_.triangles_[first_slot(first)];
+    auto* to = reinterpret_cast<std::byte*>(&tin_.triangles_[first_slot(first)]);
     unsigned choice = falls(cuts[column - 1]) << 1 | falls(cuts[column]) << 2;
-    for (std::ptrdiff_t c = column; c < end; ++c, to += 2) {
+    for (std::ptrdiff_t c = column; c < end; ++c) {
         choice = choice >> 1 | falls(cuts[c + 1]) << 2;
-        Pattern here = patterns[choice];
-        for (std::size_t i = 0; i < here.size(); ++i) {
-            here[i] += gone[i];
-            gone[i] += steps[i];
+        for (const Words& triangle : patterns[choice]) {
+            for (std::size_t i = 0; i < gone.size(); ++i) {
+                const std::uint64_t word = triangle[i] + gone[i];
+                std::memcpy(to, &word, sizeof word);
+                to += sizeof word;
+            }
         }
-        std::memcpy(static_cast<void*>(to), here.data(), sizeof here);
+        for (std::size_t i = 0; i < gone.size(); ++i)
+            gone[i] += steps[i];
     }
 }
 

@@ -2,8 +2,14 @@
 #include "api/formats/grid_mesh.hpp"
 
 #include <limits>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "api/side_by_side.hpp"
+#include "core/mesh/build.hpp"
+#include "tests/support/same_state.hpp"
 
 namespace tinsmith::api {
 namespace {
@@ -114,6 +120,67 @@ TEST(GridMesh, Refusals) {
     limits.max_triangles = 1;
     EXPECT_EQ(mesh_of_grid({{0, 0}, 1, 1, 2, 2, {1, 2, 3, 4}}, limits).faults()[0].code,
               "TOO_MANY_TRIANGLES");
+}
+
+/// Grids of which not all are meshes, as each reader may hand them on.
+std::vector<Grid> some_grids() {
+    std::vector<Grid> grids;
+    std::mt19937 random(1);
+    std::uniform_int_distribution<int> height(0, 9), size(1, 30), one_in(0, 20);
+    for (int i = 0; i < 400; ++i) {
+        Grid grid{{1e5 / 3, -2e6}, i % 2 == 0 ? 0.3 : -30.0, i % 3 == 0 ? 1e-9 : -1.7, 0, 0, {}};
+        grid.columns = static_cast<std::size_t>(size(random));
+        grid.rows = static_cast<std::size_t>(size(random)) / 2;
+        const int holes = i % 4;
+        for (std::size_t post = 0; post < grid.columns * grid.rows; ++post) {
+            const bool is_hole = one_in(random) < holes * holes;
+            grid.elevations.push_back(is_hole ? kHole : height(random) / 7.0);
+        }
+        grids.push_back(std::move(grid));
+    }
+    return grids;
+}
+
+TEST(GridMesh, StraightToTheMeshIsTheSameMesh) {
+    int same = 0, refused = 0;
+    for (const Grid& grid : some_grids()) {
+        const auto mesh = mesh_of_grid(grid, {});
+        const auto tin = tin_of_grid(grid, {}, side_by_side);
+        ASSERT_EQ(tin.has_value(), mesh.ok()) << grid.columns << " by " << grid.rows;
+        ++(tin ? same : refused);
+        if (!tin) continue;
+        EXPECT_EQ(test::differing_member(core::build_tin(*mesh).value(), *tin), -1);
+    }
+    EXPECT_GT(same, 200);
+    EXPECT_GT(refused, 20);
+}
+
+TEST(GridMesh, StraightToTheMeshWithinTheSameLimits) {
+    const Grid grid{{0, 0}, 1, 1, 3, 2, {1, 2, 3, 4, kHole, 6}};
+    for (std::size_t most = 0; most < 8; ++most) {
+        ReadLimits limits;
+        limits.max_vertices = most;
+        EXPECT_EQ(tin_of_grid(grid, limits).has_value(), mesh_of_grid(grid, limits).ok()) << most;
+        limits = {};
+        limits.max_triangles = most;
+        EXPECT_EQ(tin_of_grid(grid, limits).has_value(), mesh_of_grid(grid, limits).ok()) << most;
+    }
+}
+
+TEST(GridMesh, OnlyGridsAreMeshed) {
+    Terrain terrain;
+    terrain.name = "of a grid";
+    terrain.grid = Grid{{0, 0}, 1, 1, 2, 2, {1, 2, 3, 4}};
+    const auto meshed_terrain = meshed(terrain, {});
+    ASSERT_TRUE(meshed_terrain.ok());
+    EXPECT_FALSE(meshed_terrain->grid);
+    EXPECT_EQ(meshed_terrain->name, "of a grid");
+    EXPECT_EQ(meshed_terrain->mesh.triangles.size(), 2U);
+    EXPECT_EQ(meshed(*meshed_terrain, {})->mesh.triangles, meshed_terrain->mesh.triangles);
+    terrain.grid->columns = terrain.grid->rows = 0;
+    EXPECT_EQ(meshed(terrain, {}).faults()[0].code, "GRID_TOO_SMALL");
+    const Parsed<Terrain> refused(FaultKind::Syntax, Fault{"TIFF_SYNTAX", "no TIFF", {}});
+    EXPECT_EQ(meshed(refused, {}).faults()[0].code, "TIFF_SYNTAX");
 }
 
 }  // namespace
