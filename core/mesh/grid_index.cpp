@@ -52,22 +52,17 @@ void GridBuilder::index() {
     hint();
 }
 
-/// Of zeros with either sign a bound is the one that comes first.
+/// Of zeros with either sign a bound is the one that comes first: posts are looked at in order, and
+/// so are bands.
 void GridBuilder::bound() {
     Band all;
     for (const Band& band : bands_)
         all.take(band);
-    const auto first_zero = [this](double bound) {
-        if (bound != 0.0) return bound;
-        return std::find_if(tin_.vertices_.begin(), tin_.vertices_.end(),
-                            [](const Tin::Vertex& v) { return v.z == 0.0; })
-            ->z;
-    };
     const auto [west, east] = std::minmax(x_[static_cast<std::size_t>(all.first_used.column)],
                                           x_[static_cast<std::size_t>(all.last_used.column)]);
     const auto [south, north] = std::minmax(y_[static_cast<std::size_t>(all.first_used.row)],
                                             y_[static_cast<std::size_t>(all.last_used.row)]);
-    tin_.bounds_ = {{west, south, first_zero(all.low)}, {east, north, first_zero(all.high)}};
+    tin_.bounds_ = {{west, south, all.low}, {east, north, all.high}};
 }
 
 /// A triangle's centroid is in a row of hints by the cell's row and in a column by the cell's

@@ -188,7 +188,7 @@ void GridBuilder::write_inner_posts(Band& band, GridPlace first, std::ptrdiff_t 
         falling = (falling >> 1 & 5U) | falls(before[c]) << 1 | falls(after[c]) << 3;
         const double z = elevations[c];
         *to = {x_[static_cast<std::size_t>(c)], y, z, {triangles[falling] + gone}};
-        low = z < low ? z : low;
+        low = z < low ? z : low;  // as std::min has it: the first of equal ones stays
         high = z > high ? z : high;
     }
     band.low = low;

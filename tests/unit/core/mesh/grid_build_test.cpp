@@ -200,6 +200,14 @@ TEST(GridBuild, BoundsOfZerosHaveTheFirstOnesSign) {
     expect_the_same({{0, 0}, 1, 1, 2, 2, {-0.0, 0.0, 1.0, 2.0}});
     expect_the_same({{-0.0, -0.0}, 1, 1, 3, 2, {kHole, -1.0, -0.0, 0.0, -0.0, -3.0}});
     expect_the_same({{-2.5, 1.5}, 1, 1, 4, 4, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}});
+    // Amid whole cells, as the lowest and as the highest.
+    for (const double sign : {1.0, -1.0})
+        for (const double rim : {1.0, -1.0}) {
+            PostGrid grid{{0, 0}, 1, 1, 4, 4, std::vector<double>(16, rim)};
+            grid.elevations[5] = grid.elevations[10] = sign * 0.0;
+            grid.elevations[6] = grid.elevations[9] = -sign * 0.0;
+            expect_the_same(grid);
+        }
 }
 
 /// Where posts fall together both ways lead to none.
