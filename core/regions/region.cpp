@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/integrate/distance.hpp"
+#include "core/integrate/reach.hpp"
 #include "core/mesh/triangle_map.hpp"
 #include "core/mesh/triangle_set.hpp"
 #include "core/mesh/walk.hpp"
@@ -43,12 +44,8 @@ class RegionSearch {
             seen_.insert(t);
         for (std::size_t i = 0; i < belt_.size(); ++i)
             if (is_inside(belt_winding_[i])) flood(belt_[i]);
-        // Components that no chain touches are inside as a whole or not at all.
-        for (const TriangleId seed : tin_.components()) {
-            const VertexId v = tin_.triangle(seed).vertices[0];
-            if (std::binary_search(vertices_.begin(), vertices_.end(), v)) continue;
-            if (is_inside(number.around(tin_.plan(v))) && seen_.insert(seed)) flood(seed);
-        }
+        for (const TriangleId seed : tin_.components())
+            if (is_inside_untouched(seed, number) && seen_.insert(seed)) flood(seed);
         std::sort(found_.begin(), found_.end());
         return std::move(found_);
     }
@@ -196,12 +193,11 @@ class RegionSearch {
         std::optional<std::size_t> best;
         Point2 inner;
         for (const std::size_t i : group) {
+            const double area = doubled_area_of(belt_[i]);
+            if (!(area > largest)) continue;
             const auto [u, v, w] = tin_.triangle(belt_[i]).vertices;
             const Point2 a = tin_.plan(u), b = tin_.plan(v), c = tin_.plan(w);
-            const double area = estimate_doubled_area(a, b, c).value;
-            if (!(area > largest)) continue;
-            const Point2 centre{a.x + ((b.x - a.x) + (c.x - a.x)) / 3.0,
-                                a.y + ((b.y - a.y) + (c.y - a.y)) / 3.0};
+            const Point2 centre = centroid(belt_[i]);
             if (!is_left(a, b, centre) || !is_left(b, c, centre) || !is_left(c, a, centre))
                 continue;
             largest = area;
@@ -235,6 +231,45 @@ class RegionSearch {
         return found;
     }
 
+    /// Whether the component is inside as a whole, for no chain touches it. A line that passes it
+    /// by may run through corners of it or along its edges, to within rounding: so one of the
+    /// triangles around the seed tells whose centroid is clear of all lines; mostly the seed's is.
+    bool is_inside_untouched(TriangleId seed, const WindingNumber& number) {
+        const double rounding = 8.0 * reach_of_rounding(tin_);
+        constexpr std::size_t kMost = 64;
+        double largest = -1.0;
+        Point2 best;
+        near_seed_.assign(1, seed);
+        for (std::size_t next = 0; next < near_seed_.size(); ++next) {
+            const TriangleId t = near_seed_[next];
+            // From the triangles at the chains all that is inside was reached.
+            if (seen_.contains(t)) return false;
+            const Point2 centre = centroid(t);
+            if (number.is_clear(centre, rounding)) return is_inside(number.around(centre));
+            if (const double area = doubled_area_of(t); area > largest) {
+                largest = area;
+                best = centre;
+            }
+            for (const Side twin : tin_.triangle(t).twins)
+                if (twin.valid() && near_seed_.size() < kMost &&
+                    std::find(near_seed_.begin(), near_seed_.end(), twin.triangle()) ==
+                        near_seed_.end())
+                    near_seed_.push_back(twin.triangle());
+        }
+        return is_inside(number.around(best));
+    }
+
+    Point2 centroid(TriangleId t) const {
+        const auto [u, v, w] = tin_.triangle(t).vertices;
+        const Point2 a = tin_.plan(u), b = tin_.plan(v), c = tin_.plan(w);
+        return {a.x + ((b.x - a.x) + (c.x - a.x)) / 3.0, a.y + ((b.y - a.y) + (c.y - a.y)) / 3.0};
+    }
+
+    double doubled_area_of(TriangleId t) const {
+        const auto [u, v, w] = tin_.triangle(t).vertices;
+        return estimate_doubled_area(tin_.plan(u), tin_.plan(v), tin_.plan(w)).value;
+    }
+
     /// Adds the triangle and all that are reached from it without meeting one that was seen.
     void flood(TriangleId start) {
         std::size_t next = found_.size();
@@ -255,6 +290,7 @@ class RegionSearch {
     TriangleMap<std::uint32_t> place_in_belt_;  ///< from 1 on; 0: not there
     std::vector<int> belt_winding_;             ///< theirs
     TriangleSet seen_;
+    std::vector<TriangleId> near_seed_;
     std::vector<TriangleId> found_;
 };
 

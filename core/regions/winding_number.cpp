@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "core/integrate/distance.hpp"
 #include "core/predicates/orientation.hpp"
 
 namespace tinsmith::core {
@@ -18,17 +20,19 @@ WindingNumber::WindingNumber(const std::vector<DirectedSegment>& segments) : fir
         high = std::max({high, from.y, to.y});
         climb += std::fabs(to.y - from.y);
     }
-    if (!(climb > 0.0)) return;
     // A segment is in each row that it touches: with so many rows they are in three each at most,
     // taken together.
     const double rows =
-        std::clamp(static_cast<double>(segments.size()) * ((high - low_) / climb), 1.0, 0x1p20);
+        climb > 0.0 ? std::clamp(static_cast<double>(segments.size()) * ((high - low_) / climb),
+                                 1.0, 0x1p20)
+                    : 1.0;
     const auto count = static_cast<std::size_t>(rows);
-    rows_per_y_ = static_cast<double>(count) / (high - low_);
+    // Finite, however flat all of them are.
+    rows_per_y_ =
+        std::min(static_cast<double>(count) / (high - low_), std::numeric_limits<double>::max());
     first_.assign(count + 1, 0);
     const auto for_each_row = [this](const DirectedSegment& s, auto visit) {
         const auto [bottom, top] = std::minmax({row(s.from.y), row(s.to.y)});
-        if (s.from.y == s.to.y) return;
         for (std::size_t r = bottom; r <= top; ++r)
             visit(r);
     };
@@ -60,6 +64,17 @@ int WindingNumber::around(Point2 p) const {
         if (falls && orientation(from, to, p) == Orientation::Clockwise) --winding;
     }
     return winding;
+}
+
+bool WindingNumber::is_clear(Point2 p, double distance) const {
+    const std::size_t top = row(p.y + distance);
+    for (std::size_t i = first_[row(p.y - distance)]; i < first_[top + 1]; ++i) {
+        const auto& [from, to] = segments_[i];
+        const auto [left, right] = std::minmax(from.x, to.x);
+        if (p.x + distance < left || right < p.x - distance) continue;
+        if (distance_to_segment(p, from, to) <= distance) return false;
+    }
+    return true;
 }
 
 }  // namespace tinsmith::core

@@ -27,6 +27,9 @@ class WindingNumber {
 
     /// Requires: the position is on none of the segments; else one side or the other counts.
     int around(Point2 p) const;
+    /// Whether no segment is within the distance of the position, to within rounding of the
+    /// distance. Cost: the segments of the rows that are.
+    bool is_clear(Point2 p, double distance) const;
 
   private:
     std::size_t row(double y) const;
@@ -34,7 +37,7 @@ class WindingNumber {
     double low_ = 0.0;
     double rows_per_y_ = 0.0;
     std::vector<std::size_t> first_;         ///< where each row begins, and the end of the last
-    std::vector<DirectedSegment> segments_;  ///< row by row; horizontal ones left out
+    std::vector<DirectedSegment> segments_;  ///< row by row
 };
 
 }  // namespace tinsmith::core

@@ -286,6 +286,10 @@ TEST(RegionsProperty, SeedsThatFailedOnceHold) {
     // two whose chain went on at another vertex within snap, with a gap between.
     for (const std::uint64_t seed : {1765U, 4854U, 10700U})
         EXPECT_EQ(try_seed(seed, counts), "") << "seed " << seed;
+    // Islands that no chain touches, of which the corner that was asked is on a line to within
+    // rounding.
+    for (const std::uint64_t seed : {283U, 2125U, 4136U})
+        EXPECT_EQ(try_seed(seed, counts, Removals::Some), "") << "seed " << seed;
 }
 
 TEST(RegionsProperty, AreaIsThatOfTheRingWhereItIsSimpleAndOnTheMesh) {

@@ -2,6 +2,8 @@
 #include "core/regions/region.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 
 #include "core/mesh/check.hpp"
@@ -271,6 +273,74 @@ TEST(Region, OfASnappedRingIsClosedHoweverItBeganAndEnded) {
     const Integrated home = integrated(tin, {{outside}}, {.snap = 0.5});
     EXPECT_FALSE(home.report.outside.empty());
     EXPECT_NEAR(home.region(tin).plan_area, 8, 5);
+}
+
+/// A ring as the march reports it where it passed the mesh by, within rounding of it perhaps.
+Region region_of_passing_ring(const Tin& tin, const Path& ring) {
+    const Shape shape{{ring}};
+    std::vector<Point2> round = ring.points;
+    round.push_back(round.front());
+    const std::vector<OutsidePart> outside{{0, std::move(round)}};
+    return find_region(tin, ConstraintHistory(tin), {shape, {}, outside}, Winding::NonZero);
+}
+
+TEST(Region, OfIslandsThatTouchTheLineIsThoseInside) {
+    // Around the ring, inside and outside, one island against each edge: with one corner on it, of
+    // which each is the first in turn, or with a whole edge.
+    constexpr double kTilt = 0.25;  // exact, and so is all that is made of it
+    const auto tilted = [](Point2 p) { return Point2{p.x - kTilt * p.y, p.y + kTilt * p.x}; };
+    for (unsigned first = 0; first < 3; ++first) {
+        for (const double along : {0.0, 1.0}) {
+            MeshData islands;
+            for (const double inwards : {1.0, -1.0}) {
+                for (const Point2 out : {Point2{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+                    const auto put = [&](double depth, double aside) {
+                        const double d = 8 - depth * inwards, a = aside * inwards;
+                        const Point2 p = tilted({d * out.x + a * out.y, d * out.y - a * out.x});
+                        islands.vertices.push_back({p.x, p.y, 0});
+                    };
+                    const auto v = static_cast<std::uint32_t>(islands.vertices.size());
+                    put(0, -along);
+                    put(2, 1);
+                    put(along == 0.0 ? 2 : 0, along == 0.0 ? -1 : 1);
+                    if (along != 0.0) std::swap(islands.vertices[v + 1], islands.vertices[v + 2]);
+                    std::array<std::uint32_t, 3> t{v, v + 1, v + 2};
+                    const auto at = [&](unsigned i) { return islands.vertices[t[i]].plan(); };
+                    if (doubled_area(at(0), at(1), at(2)) < 0) std::swap(t[1], t[2]);
+                    std::rotate(t.begin(), t.begin() + first, t.end());
+                    islands.triangles.push_back(t);
+                }
+            }
+            const Tin tin = built(islands);
+            ASSERT_EQ(tin.components().size(), 8u);
+            Path ring = box(-8, -8, 8, 8);
+            for (Point2& p : ring.points)
+                p = tilted(p);
+            const std::vector<TriangleId> inside{{0}, {1}, {2}, {3}};
+            EXPECT_EQ(region_of_passing_ring(tin, ring).triangles, inside);
+            EXPECT_EQ(region_of_passing_ring(tin, reversed(ring)).triangles, inside);
+        }
+    }
+}
+
+TEST(Region, OfAnIslandWhoseFirstTriangleIsOnTheLineToWithinRounding) {
+    // An ulp wide, and the line through it; what is beside it tells.
+    for (const bool inside : {true, false}) {
+        for (const double line : {4.0, std::nextafter(4.0, 0.0), std::nextafter(4.0, 9.0)}) {
+            const double beside = inside ? 3 : 5;
+            MeshData island{
+                {{4, 1, 0}, {4, 3, 0}, {std::nextafter(4.0, beside), 2, 0}, {beside, 2.5, 0}},
+                {{0, 1, 2}, {2, 1, 3}},
+                {}};
+            if (!inside)
+                for (auto& t : island.triangles)
+                    std::swap(t[1], t[2]);
+            const Tin tin = built(island);
+            ASSERT_EQ(tin.components(), std::vector<TriangleId>{{0}});
+            EXPECT_EQ(region_of_passing_ring(tin, box(0, 0, line, 4)).triangles.size(),
+                      inside ? 2u : 0u);
+        }
+    }
 }
 
 /// As the march leaves chains where rounding forbids to split the boundary: they end at a vertex

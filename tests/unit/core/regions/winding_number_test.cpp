@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/regions/winding_number.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -80,6 +83,53 @@ TEST(WindingNumber, AgreesWithEverySegmentAskedInQuadruplePrecision) {
             ASSERT_EQ(asked.around(p), expected) << "round " << round;
         }
     }
+}
+
+TEST(WindingNumber, TellsWhatIsClearOfAllSegments) {
+    EXPECT_TRUE(WindingNumber({}).is_clear({0, 0}, 100));
+    const WindingNumber flat(closed({{0, 1}, {5, 1}}));
+    EXPECT_FALSE(flat.is_clear({2, 1.5}, 0.5));
+    EXPECT_TRUE(flat.is_clear({2, 1.5}, 0.25));
+    EXPECT_FALSE(flat.is_clear({5.5, 1}, 0.5));
+    EXPECT_TRUE(flat.is_clear({6, 1}, 0.5));
+    // So flat that rows are not to be numbered.
+    const double least = std::numeric_limits<double>::denorm_min();
+    const WindingNumber thin(closed({{0, 0}, {1, 0}, {1, least}}));
+    EXPECT_EQ(thin.around({2, 0}), 0);
+    EXPECT_FALSE(thin.is_clear({0.5, 0.5}, 0.5));
+    EXPECT_TRUE(thin.is_clear({0.5, -0.75}, 0.5));
+}
+
+TEST(WindingNumber, WhatIsClearIsSoOfEachSegment) {
+    std::mt19937_64 random(2);
+    const auto number = [&random](double size) {
+        return size * static_cast<double>(random() >> 11) * 0x1p-53;
+    };
+    unsigned clear = 0, near = 0;
+    for (int round = 0; round < 50; ++round) {
+        std::vector<Point2> points;
+        for (int i = 0; i < 3 + round; ++i)
+            points.push_back({number(10), round % 2 == 0 ? number(10) : std::floor(number(8))});
+        const auto segments = closed(points);
+        const WindingNumber asked(segments);
+        for (int k = 0; k < 100; ++k) {
+            const Point2 p{number(14) - 2, number(14) - 2};
+            const double distance = number(2);
+            const bool expected = std::ranges::all_of(segments, [&](const DirectedSegment& s) {
+                const double share = ((p.x - s.from.x) * (s.to.x - s.from.x) +
+                                      (p.y - s.from.y) * (s.to.y - s.from.y)) /
+                                     ((s.to.x - s.from.x) * (s.to.x - s.from.x) +
+                                      (s.to.y - s.from.y) * (s.to.y - s.from.y));
+                const double at = std::clamp(share, 0.0, 1.0);
+                return std::hypot(s.from.x + (s.to.x - s.from.x) * at - p.x,
+                                  s.from.y + (s.to.y - s.from.y) * at - p.y) > distance;
+            });
+            ASSERT_EQ(asked.is_clear(p, distance), expected) << "round " << round;
+            ++(expected ? clear : near);
+        }
+    }
+    EXPECT_GT(clear, 500u);
+    EXPECT_GT(near, 500u);
 }
 
 }  // namespace
