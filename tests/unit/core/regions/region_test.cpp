@@ -2,13 +2,13 @@
 #include "core/regions/region.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "core/mesh/check.hpp"
 #include "core/mesh/surgery.hpp"
 #include "core/mesh/walk.hpp"
+#include "core/predicates/orientation.hpp"
 #include "tests/unit/core/regions/integrated.hpp"
 
 namespace tinsmith::core {
@@ -284,41 +284,54 @@ Region region_of_passing_ring(const Tin& tin, const Path& ring) {
     return find_region(tin, ConstraintHistory(tin), {shape, {}, outside}, Winding::NonZero);
 }
 
+/// Islands of one triangle each around a box of half width 8: four inside against its edges, then
+/// four outside. Each touches its edge with one corner, or lies along it.
+MeshData islands_at_box(bool along_it) {
+    MeshData islands;
+    for (const double inwards : {1.0, -1.0}) {
+        for (const Point2 out : {Point2{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
+            const auto first = static_cast<std::uint32_t>(islands.vertices.size());
+            const auto put = [&](double depth, double aside) {
+                const double d = 8 - depth * inwards, a = aside * inwards;
+                islands.vertices.push_back({d * out.x + a * out.y, d * out.y - a * out.x, 0});
+            };
+            put(0, 1);
+            put(2, 0);
+            along_it ? put(0, -1) : put(2, 2);
+            islands.triangles.push_back({first, first + 1, first + 2});
+        }
+    }
+    return islands;
+}
+
 TEST(Region, OfIslandsThatTouchTheLineIsThoseInside) {
-    // Around the ring, inside and outside, one island against each edge: with one corner on it, of
-    // which each is the first in turn, or with a whole edge.
-    constexpr double kTilt = 0.25;  // exact, and so is all that is made of it
-    const auto tilted = [](Point2 p) { return Point2{p.x - kTilt * p.y, p.y + kTilt * p.x}; };
-    for (unsigned first = 0; first < 3; ++first) {
-        for (const double along : {0.0, 1.0}) {
-            MeshData islands;
-            for (const double inwards : {1.0, -1.0}) {
-                for (const Point2 out : {Point2{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
-                    const auto put = [&](double depth, double aside) {
-                        const double d = 8 - depth * inwards, a = aside * inwards;
-                        const Point2 p = tilted({d * out.x + a * out.y, d * out.y - a * out.x});
-                        islands.vertices.push_back({p.x, p.y, 0});
-                    };
-                    const auto v = static_cast<std::uint32_t>(islands.vertices.size());
-                    put(0, -along);
-                    put(2, 1);
-                    put(along == 0.0 ? 2 : 0, along == 0.0 ? -1 : 1);
-                    if (along != 0.0) std::swap(islands.vertices[v + 1], islands.vertices[v + 2]);
-                    std::array<std::uint32_t, 3> t{v, v + 1, v + 2};
-                    const auto at = [&](unsigned i) { return islands.vertices[t[i]].plan(); };
-                    if (doubled_area(at(0), at(1), at(2)) < 0) std::swap(t[1], t[2]);
-                    std::rotate(t.begin(), t.begin() + first, t.end());
-                    islands.triangles.push_back(t);
-                }
-            }
+    // Exact, so that what touches a straight line still does.
+    const auto turned = [](auto p) {
+        const auto before = p;
+        p.x -= before.y / 4;
+        p.y += before.x / 4;
+        return p;
+    };
+    Path ring = box(-8, -8, 8, 8);
+    for (Point2& p : ring.points)
+        p = turned(p);
+    const std::vector<TriangleId> inside{{0}, {1}, {2}, {3}};
+    for (const bool along_it : {false, true}) {
+        MeshData islands = islands_at_box(along_it);
+        for (Point3& v : islands.vertices)
+            v = turned(v);
+        for (auto& [a, b, c] : islands.triangles) {
+            const auto& v = islands.vertices;
+            if (orientation(v[a].plan(), v[b].plan(), v[c].plan()) == Orientation::Clockwise)
+                std::swap(b, c);
+        }
+        for (unsigned first = 0; first < 3; ++first) {
             const Tin tin = built(islands);
             ASSERT_EQ(tin.components().size(), 8u);
-            Path ring = box(-8, -8, 8, 8);
-            for (Point2& p : ring.points)
-                p = tilted(p);
-            const std::vector<TriangleId> inside{{0}, {1}, {2}, {3}};
             EXPECT_EQ(region_of_passing_ring(tin, ring).triangles, inside);
             EXPECT_EQ(region_of_passing_ring(tin, reversed(ring)).triangles, inside);
+            for (auto& t : islands.triangles)
+                std::rotate(t.begin(), t.begin() + 1, t.end());
         }
     }
 }
