@@ -182,8 +182,10 @@ void name_as_points(api::Terrain& terrain, std::vector<std::uint32_t>& vertices)
 std::size_t bytes_to_build(const api::Terrain& terrain) {
     constexpr std::size_t kOfVertex = 64;
     constexpr std::size_t kOfTriangle = 48;
-    const std::size_t vertices = terrain.mesh.vertices.size();
-    const std::size_t triangles = terrain.points ? 2 * vertices : terrain.mesh.triangles.size();
+    const std::size_t vertices =
+        terrain.grid ? terrain.grid->elevations.size() : terrain.mesh.vertices.size();
+    const bool are_to_come = terrain.points || terrain.grid;
+    const std::size_t triangles = are_to_come ? 2 * vertices : terrain.mesh.triangles.size();
     return kOfVertex * vertices + kOfTriangle * triangles;
 }
 
