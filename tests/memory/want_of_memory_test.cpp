@@ -138,7 +138,8 @@ TEST(WantOfMemory, DoesNotEndTheReception) {
         EXPECT_TRUE(client.is_closed()) << first;
         EXPECT_EQ(handed_over, before + 1) << first;
     }
-    EXPECT_GT(first, 3);
+    // For what was sent once at least; a connection may have been taken before the shortage.
+    EXPECT_GE(first, 2);
     reception.stop();
     thread.join();
     EXPECT_TRUE(is_fine);
