@@ -14,12 +14,13 @@ namespace tinsmith::core {
 namespace {
 
 using enum Orientation;
-using Triangle = GrowingDelaunay::Triangle;
 constexpr std::uint32_t kGhost = GrowingDelaunay::kGhost;
 
 /// A hull, counter-clockwise: edge i runs from vertex i to the next, and has the ghost outside.
 class Hull {
   public:
+    using Triangle = GrowingDelaunay::Triangle;
+
     Hull(std::span<const Triangle> triangles, std::uint32_t ghost) {
         const std::uint32_t first = ghost;
         do {
@@ -76,6 +77,8 @@ class Seam {
     }
 
   private:
+    using Triangle = GrowingDelaunay::Triangle;
+
     std::uint32_t ghost_in(std::size_t begin, std::size_t end) const {
         std::size_t t = begin;
         while (t + 1 < end && !triangles_[t].is_ghost())
@@ -261,7 +264,7 @@ class Seam {
 
     std::span<const Point2> points_;
     std::span<Triangle> triangles_;
-    Axis axis_;
+    PlanAxis axis_;
     Hull low_;
     Hull high_;
     std::size_t left_;                    ///< swaps that may still come

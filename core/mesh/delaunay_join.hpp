@@ -17,7 +17,7 @@ struct DelaunayHalves {
     std::span<const Point2> points;                  ///< of both
     std::span<GrowingDelaunay::Triangle> triangles;  ///< lower, higher, two free ones
     std::size_t lower_end;                           ///< where the higher ones begin
-    Axis axis;
+    PlanAxis axis;
 };
 
 /// Makes them one: fills the gap between their hulls with triangles, in the slots of the ghosts

@@ -12,16 +12,16 @@ namespace tinsmith::core {
 
 namespace {
 
-Axis longer_axis(std::span<const Point3> points) {
+PlanAxis longer_axis(std::span<const Point3> points) {
     Point2 least = points[0].plan(), most = least;
     for (const Point3& p : points) {
         least = {std::min(least.x, p.x), std::min(least.y, p.y)};
         most = {std::max(most.x, p.x), std::max(most.y, p.y)};
     }
-    return most.x - least.x >= most.y - least.y ? Axis::East : Axis::North;
+    return most.x - least.x >= most.y - least.y ? PlanAxis::East : PlanAxis::North;
 }
 
-double median_along(std::span<const Point3> points, Axis axis) {
+double median_along(std::span<const Point3> points, PlanAxis axis) {
     const std::size_t count = std::min<std::size_t>(1001, points.size());
     std::vector<double> sample;
     sample.reserve(count);
@@ -33,7 +33,8 @@ double median_along(std::span<const Point3> points, Axis axis) {
 }
 
 /// All indices, those of the nearer half first, each half by index. Where the second begins.
-std::size_t part(std::span<const Point3> points, Axis axis, std::vector<std::uint32_t>& indices) {
+std::size_t part(std::span<const Point3> points, PlanAxis axis,
+                 std::vector<std::uint32_t>& indices) {
     const double median = median_along(points, axis);
     // Each index goes to the end of either half, and stays at one: nobody can foresee at which.
     std::vector<std::uint32_t> farther(points.size());

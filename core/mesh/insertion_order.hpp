@@ -12,10 +12,10 @@
 namespace tinsmith::core {
 
 /// The plan's axis along which points are parted.
-enum class Axis : std::uint8_t { East, North };
+enum class PlanAxis : std::uint8_t { East, North };
 
-inline double along(Axis axis, Point2 p) {
-    return axis == Axis::East ? p.x : p.y;
+inline double along(PlanAxis axis, Point2 p) {
+    return axis == PlanAxis::East ? p.x : p.y;
 }
 
 /// A point at the position of an earlier one, the first there.
@@ -28,7 +28,7 @@ struct Repeated {
 struct InsertionOrder {
     std::vector<std::uint32_t> points;  ///< by index, each position once, along a Hilbert curve
     std::size_t middle = 0;             ///< where the second of two parts begins; zero: one part
-    Axis axis = Axis::East;             ///< along which those of the second are farther
+    PlanAxis axis = PlanAxis::East;     ///< along which those of the second are farther
     std::vector<Repeated> repeated;     ///< by the later one's index
 };
 
