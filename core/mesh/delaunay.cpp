@@ -43,7 +43,7 @@ class Triangulator {
         check_coordinates();
         if (!errors_.empty()) return std::move(errors_);
         if (!tell(0.0)) return cancelled();
-        const bool by_halves = points_.size() >= options_.least_to_part;
+        const bool by_halves = !points_.empty() && points_.size() >= options_.least_to_part;
         order_ = insertion_order(points_, by_halves, options_.executor);
         name_differing();
         if (!errors_.empty()) return std::move(errors_);

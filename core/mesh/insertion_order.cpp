@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "core/mesh/hilbert_order.hpp"
-#include "core/types/chosen.hpp"
 
 namespace tinsmith::core {
 

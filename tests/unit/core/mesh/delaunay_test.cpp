@@ -240,6 +240,8 @@ TEST(Delaunay, NamesNoMoreFaultsThanAllowed) {
 
 TEST(Delaunay, RefusesWhatSpansNoTriangle) {
     EXPECT_EQ(delaunay({}).errors()[0].code, ErrorCode::TooFewPoints);
+    const DelaunayOptions always_by_halves{{}, one_after_another, 0};
+    EXPECT_EQ(delaunay({}, always_by_halves).errors()[0].code, ErrorCode::TooFewPoints);
     const Points two{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}};
     EXPECT_EQ(delaunay(two).errors()[0].code, ErrorCode::TooFewPoints);
     Points line;
