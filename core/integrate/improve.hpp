@@ -19,7 +19,7 @@ namespace tinsmith::core {
 /// reached: the angles across from it sum to no more than 180 degrees; or to so little more that
 /// the smaller of the smallest angles on either side would not grow by a part in 2^36. Where both
 /// diagonals are as good as that, on four corners of a circle, the one stays or comes that gives
-/// the larger of the two smallest angles more.
+/// the larger of the two smallest angles more; but for `improve_across`, which may leave either.
 class Improver {
   public:
     explicit Improver(Surgery& surgery)
