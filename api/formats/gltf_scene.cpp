@@ -9,50 +9,69 @@
 #include <string>
 #include <utility>
 
+#include "api/formats/gltf_axes.hpp"
 #include "api/formats/gltf_pieces.hpp"
 #include "api/formats/gltf_plan.hpp"
+#include "api/parts.hpp"
 
 namespace tinsmith::api {
 namespace {
 
-/// Positions of `count` vertices: `vertex_of` gives
-/// a vertex of the mesh, `position_of` that one's float32 position in session axes.
-template <std::size_t N, typename VertexOf, typename PositionOf>
-GlbPrimitive plain_positions(const SceneInput& input, const SceneGroup* group, std::size_t count,
-                             const VertexOf& vertex_of, const PositionOf& position_of) {
+GlbPrimitive primitive_of(GlbMode mode, const SceneGroup* group) {
     GlbPrimitive primitive;
+    primitive.mode = mode;
     if (group != nullptr) {
         primitive.features = group->features;
         primitive.polygons = group->polygons;
     }
-    primitive.mode = N == 2 ? GlbMode::Lines : GlbMode::Triangles;
-    primitive.positions.resize(count * 3);
-    Box<float> box;
-    float* to = primitive.positions.data();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::array<float, 3> position = to_axes(position_of(vertex_of(i)), input.options.up);
-        box.add(position);
-        to = std::copy(position.begin(), position.end(), to);
-    }
-    std::copy(box.low.begin(), box.low.end(), primitive.low.begin());
-    std::copy(box.high.begin(), box.high.end(), primitive.high.begin());
     return primitive;
 }
 
+void set_box(GlbPrimitive& primitive, const Box<float>& box) {
+    std::ranges::copy(box.low, primitive.low.begin());
+    std::ranges::copy(box.high, primitive.high.begin());
+}
+
+/// `position_of` gives a vertex's float32 position in the file's axes.
 template <std::size_t N, typename PositionOf>
 GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
                              const Piece<N>& piece, const PositionOf& position_of) {
-    GlbPrimitive primitive = plain_positions<N>(
-        input, group, piece.vertices.size(), [&](std::size_t i) { return piece.vertices[i]; },
-        position_of);
+    GlbPrimitive primitive = primitive_of(N == 2 ? GlbMode::Lines : GlbMode::Triangles, group);
+    primitive.positions.reserve(piece.vertices.size());
+    Box<float> box;
+    for (const std::uint32_t vertex : piece.vertices)
+        box.add(primitive.positions.emplace_back(position_of(vertex)));
+    set_box(primitive, box);
     if (N == 3 && !input.normals.empty()) {
         primitive.normals.reserve(piece.vertices.size());
         for (const std::uint32_t vertex : piece.vertices)
-            primitive.normals.push_back(input.normals[vertex]);
+            primitive.normals.push_back(smooth_normal(input.normals[vertex], input.options.up));
     }
     primitive.indices.reserve(piece.corners.size() * N);
     for (const Corners<N>& corners : piece.corners)
         primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
+    return primitive;
+}
+
+/// All triangles, in the mesh's own order.
+GlbPrimitive whole_primitive(const SceneInput& input, std::vector<std::array<float, 3>> positions,
+                             const core::Executor& executor) {
+    GlbPrimitive primitive = primitive_of(GlbMode::Triangles, nullptr);
+    primitive.positions = std::move(positions);
+    primitive.normals.resize(input.normals.size());
+    std::array<Box<float>, kMostParts> boxes;
+    in_parts(executor, primitive.positions.size(), [&](Part part) {
+        for (std::size_t i = part.begin; i < part.end; ++i)
+            boxes[part.number].add(primitive.positions[i]);
+        for (std::size_t i = part.begin; i < part.end && !input.normals.empty(); ++i)
+            primitive.normals[i] = smooth_normal(input.normals[i], input.options.up);
+    });
+    Box<float> box;
+    for (const Box<float>& of_part : boxes)
+        box.add(of_part);
+    set_box(primitive, box);
+    static_assert(sizeof(input.mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
+    primitive.shared_indices = {input.mesh.triangles[0].data(), input.mesh.triangles.size() * 3};
     return primitive;
 }
 
@@ -151,7 +170,7 @@ class PrimitiveMaker {
             box.add(positions[i]);
         }
         for (std::size_t i = 0; i < normals.size(); ++i)
-            normals[i] = input_.normals[piece.vertices[i]];
+            normals[i] = smooth_normal(input_.normals[piece.vertices[i]], input_.options.up);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             made.primitive.low[axis] = grid_.step() * box.low[axis];
             made.primitive.high[axis] = grid_.step() * box.high[axis];
@@ -184,7 +203,8 @@ class PrimitiveMaker {
         return {shift,
                 plain_primitive(input_, planned.group, piece,
                                 [&](std::uint32_t vertex) {
-                                    const GridPoint n = local(vertex, shift);
+                                    const GridPoint n =
+                                        to_axes(local(vertex, shift), input_.options.up);
                                     return std::array<float, 3>{static_cast<float>(n[0]) * step,
                                                                 static_cast<float>(n[1]) * step,
                                                                 static_cast<float>(n[2]) * step};
@@ -209,12 +229,10 @@ std::array<double, 3> translation_of(const PositionGrid& grid, const GridPoint& 
 }  // namespace
 
 std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& input,
+                                                           const ScenePlan& plan,
                                                            const PositionGrid& grid,
                                                            std::span<const GridPoint> points,
                                                            const core::Executor& executor) {
-    auto planned = plan_scene(input, grid, points);
-    if (auto* error = std::get_if<EncodeError>(&planned)) return std::move(*error);
-    const auto& plan = std::get<ScenePlan>(planned);
     PrimitiveMaker maker(input, grid, points, plan.one_node);
     std::vector<PrimitiveMaker::Made> made(plan.pieces.size());
     std::vector<core::Job> jobs;
@@ -236,28 +254,23 @@ std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& inp
 }
 
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
-                   std::span<const std::array<float, 3>> positions) {
+                   std::vector<std::array<float, 3>> positions, const core::Executor& executor) {
     const auto position_of = [&](std::uint32_t vertex) { return positions[vertex]; };
     GlbNode node{"terrain", to_axes(origin, input.options.up), {}};
-    if (input.groups.empty()) {
-        const auto itself = [](std::size_t i) { return static_cast<std::uint32_t>(i); };
-        node.primitives.push_back(
-            plain_positions<3>(input, nullptr, positions.size(), itself, position_of));
-        static_assert(sizeof(input.mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
-        node.primitives.back().shared_normals = input.normals;
-        node.primitives.back().shared_indices = {input.mesh.triangles[0].data(),
-                                                 input.mesh.triangles.size() * 3};
-    }
     PieceCutter cutter(positions.size());
     for (const SceneGroup& group : input.groups) {
         const Piece<3> piece = cutter.cut<3>(input.mesh.triangles, group.triangles);
         node.primitives.push_back(plain_primitive(input, &group, piece, position_of));
     }
+    std::optional<GlbPrimitive> lines;
     if (input.options.constraints && !input.mesh.constraints.empty()) {
-        const Piece<2> lines =
+        const Piece<2> piece =
             cutter.cut<2>(input.mesh.constraints, all_of(input.mesh.constraints.size()));
-        node.primitives.push_back(plain_primitive(input, nullptr, lines, position_of));
+        lines = plain_primitive(input, nullptr, piece, position_of);
     }
+    if (input.groups.empty())
+        node.primitives.push_back(whole_primitive(input, std::move(positions), executor));
+    if (lines) node.primitives.push_back(*std::move(lines));
     return node;
 }
 

@@ -126,10 +126,10 @@ class ModelBuilder {
     void fill_plain(const GlbPrimitive& from, tinygltf::Primitive& to) {
         to.attributes["POSITION"] =
             add_plain_vectors(bytes_of(from.positions.data(), from.positions.size()));
-        const auto normals = from.plain_normals();
-        if (!normals.empty())
-            to.attributes["NORMAL"] = add_plain_vectors(bytes_of(normals.data(), normals.size()));
-        const std::size_t vertices = from.positions.size() / 3;
+        if (!from.normals.empty())
+            to.attributes["NORMAL"] =
+                add_plain_vectors(bytes_of(from.normals.data(), from.normals.size()));
+        const std::size_t vertices = from.positions.size();
         for (std::size_t i = 0; i < from.features.size(); ++i) {
             // 16 bits each and as many of padding: vertices begin at multiples of 4 bytes.
             const std::vector<std::uint32_t> ids(vertices, from.features[i]);

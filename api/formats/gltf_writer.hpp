@@ -20,27 +20,23 @@ namespace tinsmith::api {
 enum class GlbMode { Triangles, Lines };
 
 /// One primitive in glTF's axes. Either `draco` or `meshopt` holds everything and the three arrays
-/// are empty, or the arrays hold it plainly: positions as x, y, z in turn.
+/// are empty, or the arrays hold it plainly.
 struct GlbPrimitive {
     GlbMode mode = GlbMode::Triangles;
     std::array<double, 3> low{};  ///< box of the float32 positions as clients decode them
     std::array<double, 3> high{};
     std::optional<DracoBytes> draco;
     std::optional<MeshoptBytes> meshopt;
-    std::vector<float> positions;
+    std::vector<std::array<float, 3>> positions;
     std::vector<std::array<float, 3>> normals;  ///< empty: none
     std::vector<std::uint32_t> indices;
-    /// In place of the two above: someone else's, there for as long as the scene is.
-    std::span<const std::array<float, 3>> shared_normals;
+    /// In place of the indices: someone else's, there for as long as the scene is.
     std::span<const std::uint32_t> shared_indices;
     /// The rows of the property table that all its vertices have, the row beyond the last for none;
     /// none at all: it is not of a region.
     std::vector<std::uint16_t> features;
     std::vector<std::string> polygons;  ///< ids, told in `extras` beside the features
 
-    std::span<const std::array<float, 3>> plain_normals() const {
-        return shared_normals.empty() ? std::span(normals) : shared_normals;
-    }
     std::span<const std::uint32_t> plain_indices() const {
         return shared_indices.empty() ? std::span(indices) : shared_indices;
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/parts.hpp"
+
 namespace tinsmith::api {
 namespace {
 
@@ -53,15 +55,55 @@ class Rounding {
     double steps_in_metre_;
 };
 
+/// What the points are off by in metres; `points` are of the vertices.
+std::array<double, 3> largest_error(std::span<const core::Point3> vertices, double unit,
+                                    const PositionGrid& grid, const GridPoint* points) {
+    const double step = grid.step();
+    std::array<double, 3> largest{};
+    for (const core::Point3& vertex : vertices) {
+        const std::array<double, 3> metres = in_metres(vertex, unit);
+        const GridPoint& point = *points++;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double decoded = grid.origin[axis] + step * point[axis];
+            largest[axis] = std::max(largest[axis], std::fabs(decoded - metres[axis]));
+        }
+    }
+    return largest;
+}
+
+PlanCheck check_alone(std::span<const GridPoint> points,
+                      std::span<const std::array<std::uint32_t, 3>> triangles) {
+    PlanCheck check;
+    for (const auto& [a, b, c] : triangles) {
+        const std::int64_t ax = points[a][0];
+        const std::int64_t ay = points[a][1];
+        // Differences stay within 2^31, so each product fits; they are compared, not subtracted.
+        const std::int64_t left = (points[b][0] - ax) * (points[c][1] - ay);
+        const std::int64_t right = (points[b][1] - ay) * (points[c][0] - ax);
+        if (left < right) ++check.flipped;
+        if (left == right) ++check.collapsed;
+    }
+    return check;
+}
+
 /// The triangles that are flipped or collapsed.
 std::vector<std::array<std::uint32_t, 3>> faulty(
     std::span<const GridPoint> points, std::span<const std::array<std::uint32_t, 3>> triangles) {
     std::vector<std::array<std::uint32_t, 3>> found;
     for (const auto& corners : triangles) {
-        const PlanCheck check = check_plan(points, {&corners, 1});
-        if (check.flipped + check.collapsed > 0) found.push_back(corners);
+        if (check_alone(points, {&corners, 1}).faults() > 0) found.push_back(corners);
     }
     return found;
+}
+
+/// The box of coordinates as they are; six numbers that no memory holds while they grow.
+Box<double> box_of(std::span<const core::Point3> vertices) {
+    core::Point3 low{vertices[0]}, high{vertices[0]};
+    for (const core::Point3& v : vertices) {
+        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
 }  // namespace
@@ -74,10 +116,22 @@ std::int32_t PositionGrid::period() const {
     return exponent >= 0 ? 1 : std::int32_t{1} << -exponent;
 }
 
-Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre) {
+Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre,
+                             const core::Executor& executor) {
     Box<double> bounds;
-    for (const core::Point3& vertex : mesh.vertices)
-        bounds.add(in_metres(vertex, unit_to_metre));
+    if (mesh.vertices.empty()) return bounds;
+    std::array<Box<double>, kMostParts> boxes;
+    in_parts(executor, mesh.vertices.size(), [&](Part part) {
+        boxes[part.number] =
+            box_of(std::span(mesh.vertices).subspan(part.begin, part.end - part.begin));
+    });
+    for (const Box<double>& box : boxes)
+        bounds.add(box);
+    // Rounding keeps the order: the least coordinate is the least in metres as well.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        bounds.low[axis] *= unit_to_metre;
+        bounds.high[axis] *= unit_to_metre;
+    }
     return bounds;
 }
 
@@ -109,60 +163,56 @@ double finest_tolerance(const Box<double>& bounds) {
     return std::ldexp(1.0, exponent);
 }
 
-std::vector<GridPoint> quantize(const core::MeshData& mesh, double unit_to_metre,
-                                const PositionGrid& grid) {
+GridVertices quantize(const core::MeshData& mesh, double unit_to_metre, const PositionGrid& grid,
+                      const core::Executor& executor) {
     const Rounding nearest(unit_to_metre, grid);
-    std::vector<GridPoint> points(mesh.vertices.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        points[i] = nearest(mesh.vertices[i]);
-    return points;
-}
-
-std::array<double, 3> largest_error(const core::MeshData& mesh, double unit_to_metre,
-                                    const PositionGrid& grid, std::span<const GridPoint> points) {
-    const double step = grid.step();
-    std::array<double, 3> largest{};
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::array<double, 3> metres = in_metres(mesh.vertices[i], unit_to_metre);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double decoded = grid.origin[axis] + step * points[i][axis];
-            largest[axis] = std::max(largest[axis], std::fabs(decoded - metres[axis]));
-        }
+    GridVertices made;
+    made.points.resize(mesh.vertices.size());
+    std::array<std::array<double, 3>, kMostParts> errors{};
+    in_parts(executor, made.points.size(), [&](Part part) {
+        const auto vertices = std::span(mesh.vertices).subspan(part.begin, part.end - part.begin);
+        GridPoint* const points = made.points.data() + part.begin;
+        std::ranges::transform(vertices, points, nearest);
+        errors[part.number] = largest_error(vertices, unit_to_metre, grid, points);
+    });
+    for (const std::array<double, 3>& error : errors) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            made.axis_error[axis] = std::max(made.axis_error[axis], error[axis]);
     }
-    return largest;
+    return made;
 }
 
 PlanCheck check_plan(std::span<const GridPoint> points,
-                     std::span<const std::array<std::uint32_t, 3>> triangles) {
-    PlanCheck check;
-    for (const auto& [a, b, c] : triangles) {
-        const std::int64_t ax = points[a][0];
-        const std::int64_t ay = points[a][1];
-        // Differences stay within 2^31, so each product fits; they are compared, not subtracted.
-        const std::int64_t left = (points[b][0] - ax) * (points[c][1] - ay);
-        const std::int64_t right = (points[b][1] - ay) * (points[c][0] - ax);
-        if (left < right) ++check.flipped;
-        if (left == right) ++check.collapsed;
-    }
-    return check;
+                     std::span<const std::array<std::uint32_t, 3>> triangles,
+                     const core::Executor& executor) {
+    std::array<PlanCheck, kMostParts> checks;
+    in_parts(executor, triangles.size(), [&](Part part) {
+        checks[part.number] =
+            check_alone(points, triangles.subspan(part.begin, part.end - part.begin));
+    });
+    PlanCheck all;
+    for (const PlanCheck& check : checks)
+        all.add(check);
+    return all;
 }
 
 GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
-                             const PositionGrid& coarsest, std::int32_t span) {
+                             const PositionGrid& coarsest, std::int32_t span,
+                             const core::Executor& executor) {
     const auto at = [&](const PositionGrid& grid) {
-        GridPositions made{grid, quantize(mesh, unit_to_metre, grid), {}};
-        made.check = check_plan(made.points, mesh.triangles);
+        GridPositions made{grid, quantize(mesh, unit_to_metre, grid, executor), {}};
+        made.check = check_plan(made.vertices.points, mesh.triangles, executor);
         return made;
     };
-    const auto faults = [](const PlanCheck& check) { return check.flipped + check.collapsed; };
     GridPositions best = at(coarsest);
-    if (faults(best.check) == 0) return best;
-    const double half = widest_half(bounds_in_metres(mesh, unit_to_metre), coarsest.origin);
-    const auto suspects = faulty(best.points, mesh.triangles);
+    if (best.check.faults() == 0) return best;
+    const double half =
+        widest_half(bounds_in_metres(mesh, unit_to_metre, executor), coarsest.origin);
+    const auto suspects = faulty(best.vertices.points, mesh.triangles);
     PositionGrid finer = coarsest;
     // Ends: each step doubles the number of steps across the mesh, which `span` bounds, or the
     // exponent comes to its end.
-    while (faults(best.check) > 0 && --finer.exponent >= kFinestExponent &&
+    while (best.check.faults() > 0 && --finer.exponent >= kFinestExponent &&
            std::ldexp(half, -finer.exponent) < span / 2.0 - 1.0) {
         // Only where it helps some of those that need help is it worth a look at all.
         PlanCheck still;
@@ -172,13 +222,11 @@ GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
             for (std::size_t i = 0; i < 3; ++i)
                 points[i] = nearest(mesh.vertices[corners[i]]);
             constexpr std::array<std::uint32_t, 3> kOne{0, 1, 2};
-            const PlanCheck one = check_plan(points, {&kOne, 1});
-            still.flipped += one.flipped;
-            still.collapsed += one.collapsed;
+            still.add(check_alone(points, {&kOne, 1}));
         }
-        if (faults(still) >= faults(best.check)) continue;
+        if (still.faults() >= best.check.faults()) continue;
         GridPositions next = at(finer);
-        if (faults(next.check) < faults(best.check)) best = std::move(next);
+        if (next.check.faults() < best.check.faults()) best = std::move(next);
     }
     return best;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/types/executor.hpp"
 #include "core/types/mesh_data.hpp"
 
 namespace tinsmith::api {
@@ -56,6 +58,12 @@ struct Box {
             if (point[axis] > high[axis]) high[axis] = point[axis];
         }
     }
+    void add(const Box& box) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], box.low[axis]);
+            high[axis] = std::max(high[axis], box.high[axis]);
+        }
+    }
 };
 
 /// A cubic lattice: origin + step * whole numbers, in metres, axes of the session (z up).
@@ -75,10 +83,17 @@ struct PositionGrid {
 struct PlanCheck {
     std::size_t flipped = 0;
     std::size_t collapsed = 0;
+
+    std::size_t faults() const { return flipped + collapsed; }
+    void add(const PlanCheck& check) {
+        flipped += check.flipped;
+        collapsed += check.collapsed;
+    }
 };
 
 /// The box of all vertices in metres. Cost: one pass.
-Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre);
+Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre,
+                             const core::Executor& executor = core::one_after_another);
 
 /// The whole-metre position nearest to the middle of the box.
 std::array<double, 3> whole_metre_middle(const Box<double>& bounds);
@@ -93,25 +108,29 @@ std::optional<PositionGrid> grid_for(const Box<double>& bounds, double tolerance
 /// two.
 double finest_tolerance(const Box<double>& bounds);
 
-/// Each vertex at its nearest grid point, axes of the session. Cost: one pass.
-/// Requires: the grid was made for this mesh's bounds.
-std::vector<GridPoint> quantize(const core::MeshData& mesh, double unit_to_metre,
-                                const PositionGrid& grid);
+/// Vertices on a grid.
+struct GridVertices {
+    std::vector<GridPoint> points;  ///< axes of the session
+    /// The largest distance on each axis, in metres, between a vertex and what a client computes
+    /// for it: grid origin + step * n, in double.
+    std::array<double, 3> axis_error{};
+};
 
-/// The largest distance on each axis, in metres, between a vertex and what a client computes for
-/// it: grid origin + step * n, in double. Requires: as many points as vertices.
-std::array<double, 3> largest_error(const core::MeshData& mesh, double unit_to_metre,
-                                    const PositionGrid& grid, std::span<const GridPoint> points);
+/// Each vertex at its nearest grid point. Cost: one pass.
+/// Requires: the grid was made for this mesh's bounds.
+GridVertices quantize(const core::MeshData& mesh, double unit_to_metre, const PositionGrid& grid,
+                      const core::Executor& executor = core::one_after_another);
 
 /// Looks at every triangle in plan, in integers and thus exactly. Cost: one pass.
 /// Requires: |coordinates| <= kGridLimit.
 PlanCheck check_plan(std::span<const GridPoint> points,
-                     std::span<const std::array<std::uint32_t, 3>> triangles);
+                     std::span<const std::array<std::uint32_t, 3>> triangles,
+                     const core::Executor& executor = core::one_after_another);
 
 /// A mesh on a grid, and how its triangles came out.
 struct GridPositions {
     PositionGrid grid;
-    std::vector<GridPoint> points;
+    GridVertices vertices;
     PlanCheck check;
 };
 
@@ -121,7 +140,8 @@ struct GridPositions {
 /// Cost: two passes where nothing is flipped or collapsed; else two more for each grid that mends
 /// some of these, at most kDracoBits.
 GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
-                             const PositionGrid& coarsest, std::int32_t span);
+                             const PositionGrid& coarsest, std::int32_t span,
+                             const core::Executor& executor = core::one_after_another);
 
 /// Items sorted into tiles, each tile's indices rising.
 struct Tiling {

@@ -67,18 +67,18 @@ ReadyBuffers::ReadyBuffers(const core::MeshData& mesh) {
     const auto made = api::best_positions(mesh, 1.0, *coarsest, api::kDracoSteps);
     exponent = made.grid.exponent;
     const auto steps = static_cast<float>(made.grid.step());
-    const auto all_normals = api::smooth_normals(mesh, options.up);
+    const auto normals_of = api::normal_sums(mesh);
     const auto piece = api::PieceCutter(mesh.vertices.size())
                            .cut<3>(std::span(mesh.triangles), api::all_of(mesh.triangles.size()));
     triangles = piece.corners;
     api::Box<std::int32_t> box;
     for (const std::uint32_t vertex : piece.vertices) {
-        const api::GridPoint point = api::to_axes(made.points[vertex], options.up);
+        const api::GridPoint point = api::to_axes(made.vertices.points[vertex], options.up);
         box.add(point);
         std::array<float, 3>& position = positions.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis)
             position[axis] = static_cast<float>(point[axis]) * steps;
-        normals.push_back(all_normals[vertex]);
+        normals.push_back(api::smooth_normal(normals_of[vertex], options.up));
     }
     low = box.low;
     for (std::size_t axis = 0; axis < 3; ++axis)
