@@ -55,6 +55,33 @@ void Improver::improve(const std::vector<VertexId>& vertices) {
     for (std::size_t i = 0; i < vertices.size(); ++i)
         if (!is_named_again(vertices, i)) add_star(vertices[i]);
     seen_ = tin_.vertex_count();
+    swap_pending([this](Side diagonal, Side across) {
+        for (const Side outer :
+             {diagonal.next(), diagonal.previous(), across.next(), across.previous()})
+            if (may_swap(outer)) pending_.push_back(outer);
+    });
+}
+
+std::uint64_t Improver::improve_across(std::span<const Side> outer, bool is_known) {
+    const std::uint64_t before = edges_swapped_;
+    pending_.insert(pending_.end(), outer.begin(), outer.end());
+    seen_ = tin_.vertex_count();
+    unasked_ = 8;
+    swap_pending([this, is_known](Side diagonal, Side across) {
+        pending_.push_back(diagonal.previous());
+        pending_.push_back(across.next());
+        if (is_known)
+            unasked_ = 8;
+        else
+            pending_.insert(pending_.end(), {diagonal.next(), across.previous()});
+    });
+    return edges_swapped_ - before;
+}
+
+/// Swaps what waits where that is better, until nothing waits: add(diagonal, its twin) lets edges
+/// around a new diagonal wait.
+template <typename Add>
+void Improver::swap_pending(const Add& add) {
     while (!pending_.empty()) {
         // A side that an earlier swap moved names another edge of the same two triangles, all of
         // whose edges that swap added anew: looking at it costs time, never a miss.
@@ -63,33 +90,8 @@ void Improver::improve(const std::vector<VertexId>& vertices) {
         if (!may_swap(s) || !should_swap(s)) continue;
         const Side diagonal = surgery_.swap_edge(s);
         ++edges_swapped_;
-        const Side across = tin_.twin(diagonal);
-        for (const Side outer :
-             {diagonal.next(), diagonal.previous(), across.next(), across.previous()})
-            if (may_swap(outer)) pending_.push_back(outer);
+        add(diagonal, tin_.twin(diagonal));
     }
-}
-
-std::uint64_t Improver::improve_across(std::span<const Side> outer, bool is_known) {
-    const std::uint64_t before = edges_swapped_;
-    pending_.insert(pending_.end(), outer.begin(), outer.end());
-    seen_ = tin_.vertex_count();
-    unasked_ = 8;
-    while (!pending_.empty()) {
-        const Side s = pending_.back();
-        pending_.pop_back();
-        if (!may_swap(s) || !should_swap(s)) continue;
-        const Side diagonal = surgery_.swap_edge(s);
-        ++edges_swapped_;
-        const Side across = tin_.twin(diagonal);
-        pending_.push_back(diagonal.previous());
-        pending_.push_back(across.next());
-        if (is_known)
-            unasked_ = 8;
-        else
-            pending_.insert(pending_.end(), {diagonal.next(), across.previous()});
-    }
-    return edges_swapped_ - before;
 }
 
 bool Improver::improve(Side s) {

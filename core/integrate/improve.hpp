@@ -54,6 +54,8 @@ class Improver {
     static bool is_named_again(const std::vector<VertexId>& vertices, std::size_t i);
     void add_star(VertexId v);
     void add_at(Side side, std::uint32_t newest);
+    template <typename Add>
+    void swap_pending(const Add& add);
     bool may_swap(Side s) const;
     bool should_swap(Side s);
     bool is_better_swapped(const Quad& quad) const;
