@@ -61,8 +61,10 @@ GlbPrimitive whole_primitive(const SceneInput& input, std::vector<std::array<flo
     primitive.normals.resize(input.normals.size());
     std::array<Box<float>, kMostParts> boxes;
     in_parts(executor, primitive.positions.size(), [&](Part part) {
+        Box<float> box;
         for (std::size_t i = part.begin; i < part.end; ++i)
-            boxes[part.number].add(primitive.positions[i]);
+            box.add(primitive.positions[i]);
+        boxes[part.number] = box;
         for (std::size_t i = part.begin; i < part.end && !input.normals.empty(); ++i)
             primitive.normals[i] = smooth_normal(input.normals[i], input.options.up);
     });

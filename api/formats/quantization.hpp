@@ -54,8 +54,8 @@ struct Box {
 
     void add(const std::array<T, 3>& point) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (point[axis] < low[axis]) low[axis] = point[axis];
-            if (point[axis] > high[axis]) high[axis] = point[axis];
+            low[axis] = std::min(low[axis], point[axis]);
+            high[axis] = std::max(high[axis], point[axis]);
         }
     }
     void add(const Box& box) {
