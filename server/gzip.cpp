@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that knows zlib.
+// Writing by zlib; api/formats/deflated.cpp reads by it.
 #include "server/gzip.hpp"
 
 #include <algorithm>

@@ -17,6 +17,7 @@
 #include <ogr_srs_api.h>
 
 #include "api/crs.hpp"
+#include "api/formats/gdal_blocks.hpp"
 #include "api/formats/gdal_scope.hpp"
 #include "api/formats/grid_mesh.hpp"
 #include "api/formats/json_reader.hpp"
@@ -59,9 +60,10 @@ using Dataset = std::unique_ptr<void, CloseDataset>;
 /// Reads one open raster into a grid and a Terrain; each step may refuse.
 class Raster {
   public:
-    Raster(GDALDatasetH dataset, const TerrainOptions& options, const ReadLimits& limits,
-           GdalScope& messages)
-        : dataset_(dataset),
+    Raster(std::string_view bytes, GDALDatasetH dataset, const TerrainOptions& options,
+           const ReadLimits& limits, GdalScope& messages)
+        : bytes_(bytes),
+          dataset_(dataset),
           options_(options),
           limits_(limits),
           messages_(messages),
@@ -91,11 +93,14 @@ class Raster {
     std::optional<Refused> read_system(OGRSpatialReferenceH srs, SystemSaid& said) const;
     std::optional<Refused> read_elevation_unit(OGRSpatialReferenceH srs, SystemSaid& said) const;
     std::optional<Refused> read_elevations();
+    std::optional<Refused> check_coding() const;
     std::optional<Refused> check_blocks() const;
+    bool has_mask() const;
     CPLErr mask_rows(int row, int rows, double* elevations);
     std::optional<Refused> convert();
     std::array<double, 2> no_data_values() const;
 
+    std::string_view bytes_;
     GDALDatasetH dataset_;
     const TerrainOptions& options_;
     const ReadLimits& limits_;
@@ -261,9 +266,32 @@ std::optional<Refused> Raster::check_blocks() const {
     return std::nullopt;
 }
 
+std::optional<Refused> Raster::check_coding() const {
+    std::vector<GDALRasterBandH> read{band_};
+    if (has_mask()) read.push_back(GDALGetMaskBand(band_));
+    for (const GDALRasterBandH band : read) {
+        const auto bad = find_bad_coding(bytes_, band);
+        if (!bad) continue;
+        if (bad->coding.empty())
+            return refused(FaultKind::Invalid, "TIFF_DAMAGED",
+                           "Block " + bad->block +
+                               " (column, row) does not inflate to as many bytes as it has pixels "
+                               "for.");
+        return refused(FaultKind::Unsupported, "TIFF_COMPRESSION",
+                       "The pixels are compressed by " + bad->coding +
+                           ", which is for pictures. Write them without loss, for example with: "
+                           "gdal_translate -co COMPRESS=DEFLATE in.tif out.tif");
+    }
+    return std::nullopt;
+}
+
+bool Raster::has_mask() const {
+    return (GDALGetMaskFlags(band_) & GMF_PER_DATASET) != 0;
+}
+
 /// A mask inside the file says no-data too.
 CPLErr Raster::mask_rows(int row, int rows, double* elevations) {
-    if ((GDALGetMaskFlags(band_) & GMF_PER_DATASET) == 0) return CE_None;
+    if (!has_mask()) return CE_None;
     const auto width = GDALGetRasterXSize(dataset_);
     std::vector<GByte> mask(static_cast<std::size_t>(rows) * width_, 255);
     const CPLErr status = GDALRasterIO(GDALGetMaskBand(band_), GF_Read, 0, row, width, rows,
@@ -276,6 +304,7 @@ CPLErr Raster::mask_rows(int row, int rows, double* elevations) {
 
 std::optional<Refused> Raster::read_elevations() {
     if (auto no = check_blocks()) return no;
+    if (auto no = check_coding()) return no;
     messages_.forget();  // what was said of the reference system is no damage
     grid_.elevations.reserve(width_ * height_);
     int block_width = 0, block_height = 0;
@@ -363,7 +392,7 @@ Parsed<Terrain> read_geotiff(std::string_view bytes, const ReadLimits& limits,
                                             : "it does not begin as a TIFF does."),
                  ""}};
     }
-    return Raster(dataset.get(), options, limits, messages).read();
+    return Raster(bytes, dataset.get(), options, limits, messages).read();
 }
 
 }  // namespace tinsmith::api

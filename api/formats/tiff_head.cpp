@@ -10,6 +10,9 @@ namespace tinsmith::api {
 namespace {
 
 constexpr std::uint64_t kSamplesPerPixel = 277;
+constexpr std::uint64_t kTileWidth = 322;
+constexpr std::uint64_t kShort = 3;
+constexpr std::uint64_t kLong = 4;
 
 /// Numbers of a file in its own byte order, as far as there are bytes.
 class TiffNumbers {
@@ -47,33 +50,85 @@ std::size_t size_of_type(std::uint64_t type) {
     }
 }
 
+/// A TIFF or BigTIFF, by its first bytes.
+class TiffFile {
+  public:
+    /// Nothing: it is none.
+    static std::optional<TiffFile> open(std::string_view bytes) {
+        const bool big_endian = bytes.starts_with("MM");
+        if (!big_endian && !bytes.starts_with("II")) return std::nullopt;
+        const TiffNumbers numbers(bytes, big_endian);
+        const auto magic = numbers.at(2, 2);
+        if (magic != 42 && magic != 43) return std::nullopt;
+        return TiffFile(bytes.size(), numbers, magic == 43);
+    }
+
+    std::optional<std::uint64_t> first_directory() const {
+        return numbers_.at(is_big_ ? 8 : 4, room_);
+    }
+
+    struct Entry {
+        std::uint64_t tag;
+        std::uint64_t type;
+        std::uint64_t count;
+        std::optional<std::uint64_t>
+            number;  ///< the first, where it is whole and stands right here
+    };
+
+    /// Calls visit(entry) for all entries of a directory that are there.
+    template <typename Visit>
+    void for_each_entry(std::uint64_t directory, const Visit& visit) const {
+        const std::size_t count_size = is_big_ ? 8 : 2;
+        const std::size_t entry_size = is_big_ ? 20 : 12;
+        const auto count = numbers_.at(directory, count_size);
+        if (!count) return;
+        const std::uint64_t first = directory + count_size;
+        const std::uint64_t there = std::min<std::uint64_t>(*count, (size_ - first) / entry_size);
+        for (std::uint64_t i = 0; i < there; ++i) {
+            const std::uint64_t place = first + i * entry_size;
+            const std::uint64_t type = *numbers_.at(place + 2, 2);
+            const std::size_t size = size_of_type(type);
+            Entry entry{*numbers_.at(place, 2), type, *numbers_.at(place + 4, room_), {}};
+            if (size > 0 && size <= room_)
+                entry.number = numbers_.at(place + entry_size - room_, size);
+            visit(entry);
+        }
+    }
+
+  private:
+    TiffFile(std::size_t size, TiffNumbers numbers, bool is_big)
+        : size_(size), numbers_(numbers), is_big_(is_big), room_(is_big ? 8 : 4) {}
+
+    std::size_t size_;
+    TiffNumbers numbers_;
+    bool is_big_;
+    std::size_t room_;  ///< bytes of a place in the file, and of a count
+};
+
 }  // namespace
 
 std::uint64_t tiff_band_count(std::string_view bytes) {
-    const bool big_endian = bytes.starts_with("MM");
-    if (!big_endian && !bytes.starts_with("II")) return 0;
-    const TiffNumbers numbers(bytes, big_endian);
-    const auto magic = numbers.at(2, 2);
-    if (magic != 42 && magic != 43) return 0;
-    const bool is_big = magic == 43;
-    const auto directory = is_big ? numbers.at(8, 8) : numbers.at(4, 4);
-    const std::size_t count_size = is_big ? 8 : 2;
-    const std::size_t entry_size = is_big ? 20 : 12;
-    const auto count = directory ? numbers.at(*directory, count_size) : std::nullopt;
-    if (!count) return 0;
-    const std::uint64_t first = *directory + count_size;
-    const std::uint64_t there =
-        std::min<std::uint64_t>(*count, (bytes.size() - first) / entry_size);
+    const auto file = TiffFile::open(bytes);
+    const auto directory = file ? file->first_directory() : std::nullopt;
     std::uint64_t most = 0;
-    for (std::uint64_t i = 0; i < there; ++i) {
-        const std::uint64_t entry = first + i * entry_size;
-        if (numbers.at(entry, 2) != kSamplesPerPixel) continue;
-        const std::size_t size = size_of_type(*numbers.at(entry + 2, 2));
-        const std::size_t room = is_big ? 8 : 4;
-        if (size > 0 && size <= room)
-            most = std::max(most, *numbers.at(entry + entry_size - room, size));
-    }
+    if (!directory) return most;
+    file->for_each_entry(*directory, [&](const TiffFile::Entry& entry) {
+        if (entry.tag == kSamplesPerPixel) most = std::max(most, entry.number.value_or(0));
+    });
     return most;
+}
+
+bool tiff_is_tiled(std::string_view bytes, std::uint64_t directory, std::uint64_t width) {
+    const auto file = TiffFile::open(bytes);
+    if (!file) return false;
+    std::size_t said = 0, plainly = 0;
+    file->for_each_entry(directory, [&](const TiffFile::Entry& entry) {
+        if (entry.tag != kTileWidth) return;
+        ++said;
+        const bool is_plain = entry.type == kShort || entry.type == kLong;
+        if (is_plain && entry.count == 1 && entry.number == width) ++plainly;
+    });
+    return said == 1 && plainly == 1;
 }
 
 }  // namespace tinsmith::api

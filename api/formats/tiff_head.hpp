@@ -12,4 +12,9 @@ namespace tinsmith::api {
 /// Source: TIFF 6.0, section 2; the BigTIFF design at libtiff.gitlab.io.
 std::uint64_t tiff_band_count(std::string_view bytes);
 
+/// Whether the directory at that place says plainly, once and as a SHORT or LONG, that its raster
+/// is in tiles of that width; where it says so in another way libraries differ in what they
+/// believe.
+bool tiff_is_tiled(std::string_view bytes, std::uint64_t directory, std::uint64_t width);
+
 }  // namespace tinsmith::api

@@ -51,7 +51,7 @@ const std::array<Home, 17> kHomes = {{
     {"prometheus-cpp", R"(prometheus/.*)", R"(server/([a-z_]+/)*[a-z_]*metrics[a-z_/]*\.cpp)",
      false},
     {"OpenSSL", R"(openssl/.*)", R"(server/digest\.cpp)", true},
-    {"zlib", R"(zlib\.h)", R"(server/gzip\.cpp)", true},
+    {"zlib", R"(zlib\.h)", R"(api/formats/deflated\.cpp|server/gzip\.cpp)", false},
     {"SQLite", R"(sqlite3\.h)", R"(server/store/database\.cpp)", true},
     {"the system's memory", R"(sys/mman\.h)", R"(core/mesh/large_blocks\.cpp)", true},
     {"GoogleTest", R"((gtest|gmock)/.*)", R"(tests/.*)", false},

@@ -37,6 +37,7 @@ class LyingFiles : public testing::Test {
             const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
             EXPECT_EQ(answer.status, file.status) << answer.body;
             EXPECT_EQ(answer.header("content-type"), "application/problem+json");
+            EXPECT_NE(answer.body.find(file.code), std::string::npos) << answer.body;
             EXPECT_LT(seconds, kMostSeconds);
             if (is_long_form())
                 std::cout << file.name << ": " << answer.status << ", " << victim.growth()

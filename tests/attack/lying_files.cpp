@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/attack/lying_files.hpp"
 
+#include <array>
+#include <bit>
 #include <map>
 
 #include <zlib.h>
@@ -25,25 +27,39 @@ enum Tag : std::uint16_t {
     kTileOffsets = 324,
     kTileByteCounts = 325,
     kSampleFormat = 339,
+    kPixelScale = 33550,
+    kTiePoint = 33922,
 };
 constexpr std::uint32_t kDeflate = 8;
 
-/// A TIFF of one image, each tag of one number; the data right after the head of 8 bytes.
+/// Pixels of a metre, the first at (1000, 2000).
+constexpr std::array<double, 9> kPlace{1, 1, 0, 0, 0, 0, 1000, 2000, 0};
+
+/// A TIFF of one image that says where it lies, all else of one number each; the data right after
+/// the head of 8 bytes, then the place.
 std::string tiff(const std::map<std::uint16_t, std::uint32_t>& tags, const std::string& data,
                  std::uint32_t next = 0) {
-    constexpr std::uint16_t kLong = 4;
+    constexpr std::uint16_t kLong = 4, kDouble = 12;
     std::string out = "II*";
     out.push_back('\0');
     const std::string padded = data + std::string(data.size() % 2, '\0');
-    append_number(out, static_cast<std::uint32_t>(8 + padded.size()));
+    append_number(out, static_cast<std::uint32_t>(8 + padded.size() + sizeof kPlace));
     out += padded;
-    append_number(out, static_cast<std::uint16_t>(tags.size()));
-    for (const auto& [tag, value] : tags) {
+    const auto place = static_cast<std::uint32_t>(out.size());
+    for (const double number : kPlace)
+        append_number(out, std::bit_cast<std::uint64_t>(number));
+    append_number(out, static_cast<std::uint16_t>(tags.size() + 2));
+    const auto append_entry = [&out](std::uint16_t tag, std::uint16_t type, std::uint32_t count,
+                                     std::uint32_t value) {
         append_number(out, tag);
-        append_number(out, kLong);
-        append_number(out, std::uint32_t{1});
+        append_number(out, type);
+        append_number(out, count);
         append_number(out, value);
-    }
+    };
+    for (const auto& [tag, value] : tags)
+        append_entry(tag, kLong, 1, value);
+    append_entry(kPixelScale, kDouble, 3, place);
+    append_entry(kTiePoint, kDouble, 6, place + 3 * sizeof(double));
     append_number(out, next);
     return out;
 }
@@ -102,31 +118,43 @@ std::vector<LyingFile> lying_tiffs() {
     const std::string bomb = deflated_zeros(std::size_t{36'000'000});
     compressed[kStripByteCounts] = static_cast<std::uint32_t>(bomb.size());
     std::string directory_of_65535 = tiff(floats(4, 4, strip(4, 64)), four);
-    directory_of_65535[8 + 64] = '\xFF', directory_of_65535[8 + 65] = '\xFF';
+    const std::uint32_t directory = 8 + 64 + sizeof kPlace;
+    directory_of_65535[directory] = '\xFF', directory_of_65535[directory + 1] = '\xFF';
     std::string big = "II+";
     big.push_back('\0');
     append_number(big, std::uint16_t{8});
     append_number(big, std::uint16_t{0});
     append_number(big, std::uint64_t{16});
     append_number(big, ~std::uint64_t{0});
+    // Stored, and far longer than the strip: what reads it stops without having written any of it.
+    auto too_long = strip(4, 0);
+    too_long[kCompression] = kDeflate;
+    const std::string stored =
+        "\x78\x01\x01\xff\xff" + std::string(2, '\0') + std::string(65'535, '\1');
+    too_long[kStripByteCounts] = static_cast<std::uint32_t>(stored.size());
     auto bands = strip(4, 64);
     bands[kSamplesPerPixel] = 46'774;
     return {
-        {"46,774 bands", type, tiff(floats(4, 4, bands), four), 422},
+        {"46,774 bands", type, tiff(floats(4, 4, bands), four), 422, "TIFF_BANDS"},
         {"4e9 by 4e9 pixels", type, tiff(floats(4'000'000'000, 4'000'000'000, strip(4, 64)), four),
          400},
         {"2e9 by 2e9 pixels", type, tiff(floats(2'000'000'000, 2'000'000'000, strip(4, 64)), four),
          413},
         {"30,000 by 30,000 pixels of nothing", type,
          tiff(floats(30'000, 30'000, strip(30'000, 64)), four), 413},
-        {"a strip of 4 GiB", type, tiff(floats(4, 4, strip(4, 0xFFFFFFFF)), four), 422},
+        {"a strip of 4 GiB that is not there", type,
+         tiff(floats(4, 4, strip(4, 0xFFFFFFFF)), "\1\2\3\4").substr(0, 8 + 4), 400},
+        {"a strip beyond the end", type, tiff(floats(16, 16, strip(16, 1024)), four), 422,
+         "TIFF_DAMAGED"},
+        {"a strip that inflates to more than its pixels", type,
+         tiff(floats(4, 4, too_long), stored), 422, "TIFF_DAMAGED"},
         {"a tile of 4 GiB", type, tiff(floats(4, 4, tile(32'768, 64)), four), 413},
         {"a tile of 16 EiB", type, tiff(floats(4, 4, tile(0xFFFFFFF0, 64)), four), 400},
         {"a bomb of deflate beyond what is taken", type,
          tiff(floats(12'000, 12'000, compressed), bomb), 413},
         {"a directory of 65,535 entries", type, directory_of_65535, 400},
         {"a directory that goes on in itself", type,
-         tiff(floats(12'000, 12'000, strip(4, 64)), four, 8 + 64), 413},
+         tiff(floats(12'000, 12'000, strip(4, 64)), four, directory), 413},
         {"BigTIFF of 2^64 entries", type, big, 400},
     };
 }

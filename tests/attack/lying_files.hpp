@@ -12,7 +12,8 @@ struct LyingFile {
     std::string name;
     std::string type;  ///< as Content-Type says it
     std::string bytes;
-    int status = 0;  ///< that refuses it
+    int status = 0;         ///< that refuses it
+    std::string code = {};  ///< of what is told of it; empty: any
 };
 
 /// Small ones of very many parts, or of parts that are very long.

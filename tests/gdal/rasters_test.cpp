@@ -107,6 +107,13 @@ TEST(Rasters, OfEverySampleTypeAndLayout) {
         "-ot Float32 -co TILED=YES -co COMPRESS=DEFLATE -co PREDICTOR=3 -co BIGTIFF=YES",
         "-ot Float64 -co COMPRESS=ZSTD -co ENDIANNESS=BIG",
         "-ot Float64 -co COMPRESS=LERC",
+        "-ot Float32 -co COMPRESS=LERC_DEFLATE",
+        "-ot Float32 -co COMPRESS=LZMA -co BLOCKYSIZE=50",
+        "-ot Float32 -co COMPRESS=DEFLATE -co BLOCKYSIZE=7",
+        "-ot Float64 -co COMPRESS=DEFLATE -co PREDICTOR=3 -co ENDIANNESS=BIG",
+        "-ot Int16 -co COMPRESS=DEFLATE -co TILED=YES -co BLOCKXSIZE=512 -co BLOCKYSIZE=48",
+        "-ot UInt16 -a_nodata 0 -co COMPRESS=DEFLATE -co NBITS=12",
+        "-ot Float32 -co COMPRESS=DEFLATE -co NBITS=24",
         "-ot Int16 -a_scale 0.01 -a_offset 500 -a_nodata -9999",
         "-ot Float32 -a_nodata nan",
         "-mo AREA_OR_POINT=Point",
@@ -121,6 +128,25 @@ TEST(Rasters, OfEverySampleTypeAndLayout) {
         EXPECT_EQ(terrain.crs, "EPSG:32616");
         expect_same(terrain.mesh, posts_by_gdal(shop.path("out.tif")), 0.0, 200);
     }
+}
+
+TEST(Rasters, OfPicturesAreRefused) {
+    const Workshop shop;
+    shop.run("gdal_translate -ot Byte -co COMPRESS=JPEG " + kTerrain + " out.tif");
+    const auto terrain = api::read_geotiff(shop.read("out.tif"), {}, {});
+    ASSERT_FALSE(terrain);
+    EXPECT_EQ(terrain.faults()[0].code, "TIFF_COMPRESSION");
+    EXPECT_NE(terrain.faults()[0].detail.find("JPEG"), std::string::npos);
+}
+
+/// A tile as wide as the raster is no strip: it is whole where the raster ends.
+TEST(Rasters, OfTilesAsWideAsTheRaster) {
+    const Workshop shop;
+    shop.run(
+        "gdal_translate -srcwin 0 0 256 100 -co COMPRESS=DEFLATE -co TILED=YES -co "
+        "BLOCKXSIZE=256 -co BLOCKYSIZE=64 " +
+        kTerrain + " out.tif");
+    expect_same(read_tiff(shop.read("out.tif")).mesh, posts_by_gdal(shop.path("out.tif")), 0.0, 20);
 }
 
 TEST(Rasters, WithOverviewsAndSouthUp) {

@@ -61,37 +61,6 @@ TEST(GeoTiff, PostsLieAtPixelCentres) {
     EXPECT_EQ(terrain->mesh.vertices[5], (Point3{500025, 3999985, 6.25}));
 }
 
-/// The file with a second directory: the mask of its pixels, a byte of bits for each row.
-std::string masked(std::string bytes, std::uint32_t width, const std::string& rows) {
-    const auto number = [](std::uint32_t value, std::size_t size) {
-        return std::string(reinterpret_cast<const char*>(&value), size);  // little-endian
-    };
-    const std::size_t next = bytes.size() - 4;
-    const auto at = static_cast<std::uint32_t>(bytes.size());
-    bytes += rows + std::string(rows.size() % 2, '\0');
-    bytes.replace(next, 4, number(static_cast<std::uint32_t>(bytes.size()), 4));
-    const auto height = static_cast<std::uint32_t>(rows.size());
-    const std::vector<std::pair<std::uint32_t, std::uint32_t>> tags{
-        {254, 4},  // a mask
-        {256, width}, {257, height}, {258, 1},      {259, 1},     {262, 4},
-        {273, at},    {277, 1},      {278, height}, {279, height}};
-    bytes += number(static_cast<std::uint32_t>(tags.size()), 2);
-    for (const auto& [tag, value] : tags)
-        bytes += number(tag, 2) + number(4, 2) + number(1, 4) + number(value, 4);
-    return bytes + std::string(4, '\0');
-}
-
-TEST(GeoTiff, WhatAMaskHidesIsNoData) {
-    const std::string bytes = three_by_two().bytes();
-    const auto all = read_mesh(masked(bytes, 3, "\xe0\xe0"), {});
-    ASSERT_TRUE(all.ok()) << all.faults()[0].detail;
-    EXPECT_EQ(all->mesh.triangles.size(), 4U);
-    const auto some = read_mesh(masked(bytes, 3, "\xc0\xe0"), {});
-    ASSERT_TRUE(some.ok()) << some.faults()[0].detail;
-    EXPECT_EQ(some->mesh.vertices.size(), 5U) << "without the last of the first row";
-    EXPECT_EQ(some->mesh.triangles.size(), 3U);
-}
-
 TEST(GeoTiff, PixelIsPointNamesTheCentreItself) {
     TiffBytes tiff(2, 2, {1, 2, 3, 4});
     const auto terrain =

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tinsmith::testing {
@@ -29,6 +30,13 @@ class TiffBytes {
         set_long(278, height);
         set_long(279, static_cast<std::uint32_t>(data_.size()));
         set_short(339, 3);  // IEEE floating point
+    }
+
+    /// The strip as it is in the file, by a compression of that number.
+    TiffBytes& coded(std::uint16_t compression, std::string data) {
+        data_ = std::move(data);
+        set_long(279, static_cast<std::uint32_t>(data_.size()));
+        return set_short(259, compression);
     }
 
     /// The upper left corner of the first pixel, or its centre with `pixel_is_point`.

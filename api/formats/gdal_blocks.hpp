@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tinsmith::api {
+
+/// What is wrong with how a band's pixels lie in the file.
+struct BadCoding {
+    std::string coding;  ///< the name of one that is not taken; empty: it is a block that is wrong
+    std::string block;   ///< "column_row"
+};
+
+/// A coding that is not among those whose decoders fill every block or fail; or a deflated block
+/// that does not hold exactly as many bytes as it has pixels for. libtiff takes such a block for a
+/// whole one, and pixels that it did not write are what the process had in that memory before.
+/// `band`: GDAL's handle; `bytes`: the file that it is of. Cost: deflated blocks are inflated once.
+std::optional<BadCoding> find_bad_coding(std::string_view bytes, void* band);
+
+}  // namespace tinsmith::api
