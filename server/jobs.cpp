@@ -115,22 +115,28 @@ std::optional<api::JobView> Jobs::add(Request request, Task task) {
     job->request = std::move(request);
     job->request.pass.reset();  // a job is no request in flight
     job->task = std::move(task);
-    job->bytes = bytes;
     api::JobView view = view_of(*job);
-    const auto place = jobs_.emplace(job->view.id, job).first;
+    const auto share = shares_.try_emplace(job->owner).first;
+    auto place = jobs_.end();
     try {
+        place = jobs_.emplace(job->view.id, job).first;
         queue_.push_back(job);
         start_thread();
     } catch (...) {
         if (!queue_.empty() && queue_.back() == job) queue_.pop_back();
-        jobs_.erase(place);
+        if (place != jobs_.end()) jobs_.erase(place);
+        if (share->second.jobs == 0) shares_.erase(share);
         throw;
     }
     // From here on nothing fails.
-    bytes_ += bytes;
+    job->share = &share->second;
+    ++job->share->jobs;
+    count(*job, bytes);
     live_bytes_ += bytes;
-    while (!ended_.empty() && (jobs_.size() > bounds_.kept || bytes_ > bounds_.bytes))
-        drop_first_ended();
+    while (!ended_.empty() && jobs_.size() > bounds_.kept)
+        drop_of_largest(&Share::jobs, ended_.end());
+    while (!ended_.empty() && bytes_ > bounds_.bytes)
+        drop_of_largest(&Share::bytes, ended_.end());
     queue_changed_.notify_one();
     return view;
 }
@@ -182,20 +188,22 @@ void Jobs::end(Job& job, Response answer) noexcept {
     job.task = nullptr;
     if (const Heir heir = std::exchange(job.heir, nullptr)) heir(answer.status);
     job.ended = clock_();
-    bytes_ -= job.bytes;
     live_bytes_ -= job.bytes;
-    job.bytes = bytes_of(answer);
-    job.view.kept = job.bytes <= bounds_.bytes;
-    if (!job.view.kept) {
-        answer = {};
-        job.bytes = bytes_of(answer);
-    }
+    job.view.kept = bytes_of(answer) <= bounds_.bytes;
+    if (!job.view.kept) answer = {};
+    count(job, bytes_of(answer));
     job.answer = std::move(answer);
-    bytes_ += job.bytes;
     ended_.splice(ended_.end(), job.place);
     while (bytes_ > bounds_.bytes && ended_.size() > 1)
-        drop_first_ended();
+        drop_of_largest(&Share::bytes, std::prev(ended_.end()));
     job_ended_.notify_all();
+}
+
+/// The job takes so many bytes now. Requires: the lock.
+void Jobs::count(Job& job, std::size_t bytes) noexcept {
+    bytes_ += bytes - job.bytes;
+    job.share->bytes += bytes - job.bytes;
+    job.bytes = bytes;
 }
 
 void Jobs::when_ended(const std::string& id, Heir heir) noexcept {
@@ -216,21 +224,32 @@ api::JobView Jobs::view_of(const Job& job) {
     return view;
 }
 
-/// Requires: the lock, and that one has ended.
-void Jobs::drop_first_ended() noexcept {
-    drop(jobs_.find(ended_.front()));
+/// Of the jobs that ended before that one, drops the first of the asker who has most here.
+/// Requires: the lock, and that there is one. Cost: linear in those that have ended.
+void Jobs::drop_of_largest(std::size_t Share::*measure, Ended::const_iterator end) noexcept {
+    auto most = jobs_.end();
+    for (auto id = ended_.cbegin(); id != end; ++id) {
+        const auto job = jobs_.find(*id);
+        if (most == jobs_.end() || job->second->share->*measure > most->second->share->*measure)
+            most = job;
+    }
+    drop(most);
 }
 
 /// Requires: the lock.
 void Jobs::drop_old() {
     const Time now = clock_();
-    while (!ended_.empty() && now - jobs_.find(ended_.front())->second->ended >= bounds_.age)
-        drop_first_ended();
+    while (!ended_.empty()) {
+        const auto oldest = jobs_.find(ended_.front());
+        if (now - oldest->second->ended < bounds_.age) return;
+        drop(oldest);
+    }
 }
 
 /// Requires: the lock, and that the job has ended.
 void Jobs::drop(JobMap::iterator job) noexcept {
-    bytes_ -= job->second->bytes;
+    count(*job->second, 0);
+    if (--job->second->share->jobs == 0) shares_.erase(job->second->owner);
     ended_.erase(job->second->id);
     jobs_.erase(job);
 }

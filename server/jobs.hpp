@@ -27,8 +27,9 @@ namespace tinsmith::server {
 ///
 /// Laws: a job is its asker's: for others it is not there; its state goes forward only, from queued
 /// over running to one of the three ends, and says what became of the request: `stopped` means that
-/// nothing came of it. Jobs that have not ended are never dropped; of those that have, the one that
-/// ended first goes first, when there are too many, too many bytes, or it is too old. Threads are
+/// nothing came of it. Jobs that have not ended are never dropped; of those that have, one goes
+/// when it is too old, and when there are too many or too many bytes: of the asker who has most of
+/// them the one that ended first. So nobody loses a result to others who keep more. Threads are
 /// started by the first job.
 class Jobs {
   public:
@@ -98,6 +99,13 @@ class Jobs {
     void shut_down();
 
   private:
+    /// What one asker has here.
+    struct Share {
+        std::size_t jobs = 0;
+        std::size_t bytes = 0;
+    };
+    using Ended = std::list<std::string>;
+
     struct Job {
         api::JobView view;  ///< but for its progress, which the work has
         std::string owner;  ///< the key that asked for it; empty: none did
@@ -108,8 +116,9 @@ class Jobs {
         Response answer;
         std::size_t bytes = 0;
         Time ended;
-        std::list<std::string> place;  ///< its id, to be moved into `ended_`: an end must not fail
-        std::list<std::string>::iterator id;  ///< there, or in `ended_`
+        Ended place;             ///< its id, to be moved into `ended_`: an end must not fail
+        Ended::iterator id;      ///< there, or in `ended_`
+        Share* share = nullptr;  ///< its owner's
     };
     using JobPtr = std::shared_ptr<Job>;
     using JobMap = std::map<std::string, JobPtr>;
@@ -122,7 +131,8 @@ class Jobs {
     void run_jobs();
     void end(Job& job, Response answer) noexcept;
     void drop_old();
-    void drop_first_ended() noexcept;
+    void count(Job& job, std::size_t bytes) noexcept;
+    void drop_of_largest(std::size_t Share::*measure, Ended::const_iterator end) noexcept;
     void drop(JobMap::iterator job) noexcept;
 
     const Bounds bounds_;
@@ -132,7 +142,8 @@ class Jobs {
     std::condition_variable job_ended_;
     JobMap jobs_;  ///< in the order in which they came
     std::deque<JobPtr> queue_;
-    std::list<std::string> ended_;  ///< ids of those of `jobs_`, in that order
+    Ended ended_;                          ///< ids of those of `jobs_`, in that order
+    std::map<std::string, Share> shares_;  ///< of those who have jobs, by their keys
     std::size_t bytes_ = 0;
     std::size_t live_bytes_ = 0;  ///< of those that have not ended
     std::uint64_t count_ = 0;

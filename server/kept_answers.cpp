@@ -32,14 +32,19 @@ bool copy_if_possible(const Response& answer, Response& copy) {
     }
 }
 
-/// Puts the name last in both orders, or throws and leaves them. The second one.
-template <typename Order, typename ByScope>
-auto& append(Order& order, ByScope& of_scope, const KeptAnswers::Name& name) {
+/// Puts the name last in both orders, or throws and leaves them. Its scope.
+template <typename Order, typename Scopes>
+auto& append(Order& order, Scopes& scopes, const KeptAnswers::Name& name) {
     order.push_back(name);
     try {
-        const auto [of, is_new] = of_scope.try_emplace(name.first, 1, name);
-        if (!is_new) of->second.push_back(name);
-        return of->second;
+        auto& scope = scopes[name.first];
+        try {
+            scope.names.push_back(name);
+        } catch (...) {
+            if (scope.names.empty()) scopes.erase(name.first);
+            throw;
+        }
+        return scope;
     } catch (...) {
         order.pop_back();
         throw;
@@ -100,15 +105,21 @@ void KeptAnswers::fill(Entries::iterator place, const Response& answer, Time sin
     Entry& entry = place->second;
     entry.whole = bytes_of(name, answer) <= bounds_.bytes / kShare;
     if (entry.whole) entry.whole = copy_if_possible(answer, entry.answer);
-    entry.bytes = bytes_of(name, entry.answer);
     entry.since = since;
-    auto& siblings = append(order_, of_scope_, name);
+    Scope& scope = append(order_, scopes_, name);
     entry.place = std::prev(order_.end());
     entry.running = false;
     entry.number = ++count_;
-    bytes_ += entry.bytes;
-    if (siblings.size() > bounds_.per_scope) erase(entries_.find(siblings.front()));
+    count(scope, entry, bytes_of(name, entry.answer));
+    if (scope.names.size() > bounds_.per_scope) erase(entries_.find(scope.names.front()));
     make_room();
+}
+
+/// The entry takes so many bytes now. Requires: the lock.
+void KeptAnswers::count(Scope& scope, Entry& entry, std::size_t bytes) {
+    scope.bytes += bytes - entry.bytes;
+    bytes_ += bytes - entry.bytes;
+    entry.bytes = bytes;
 }
 
 void KeptAnswers::take_back(const Name& name, std::uint64_t number) noexcept {
@@ -129,26 +140,54 @@ void KeptAnswers::make_room() {
     const Time now = clock_();
     while (!order_.empty()) {
         const auto oldest = entries_.find(order_.front());
-        if (bytes_ <= bounds_.bytes && now - oldest->second.since < bounds_.age) return;
+        if (now - oldest->second.since < bounds_.age) break;
         erase(oldest);
     }
+    // Ends: each turn takes a body or a key.
+    while (bytes_ > bounds_.bytes && !order_.empty()) {
+        if (const auto scope = largest(true); scope != scopes_.end()) {
+            take_oldest_body(scope->second);
+        } else {
+            erase(entries_.find(largest(false)->second.names.front()));
+        }
+    }
+}
+
+/// The scope that takes the most, of all or of those that have bodies; the end: there is none.
+KeptAnswers::Scopes::iterator KeptAnswers::largest(bool with_bodies) {
+    auto most = scopes_.end();
+    for (auto scope = scopes_.begin(); scope != scopes_.end(); ++scope) {
+        if (with_bodies && scope->second.bare == scope->second.names.size()) continue;
+        if (most == scopes_.end() || scope->second.bytes > most->second.bytes) most = scope;
+    }
+    return most;
+}
+
+/// Requires: not all of them are bare.
+void KeptAnswers::take_oldest_body(Scope& scope) {
+    Entry& entry = entries_.find(scope.names[scope.bare++])->second;
+    entry.whole = false;
+    entry.answer = {};
+    count(scope, entry, bytes_of(scope.names[scope.bare - 1], entry.answer));
 }
 
 /// Requires: the lock, and not running. Fast for the oldest of its scope.
 void KeptAnswers::erase(Entries::iterator entry) {
-    const auto siblings = of_scope_.find(entry->first.first);
-    std::deque<Name>& names = siblings->second;
-    names.erase(std::find(names.begin(), names.end(), entry->first));
-    if (names.empty()) of_scope_.erase(siblings);
+    const auto of = scopes_.find(entry->first.first);
+    Scope& scope = of->second;
+    const auto name = std::find(scope.names.begin(), scope.names.end(), entry->first);
+    if (static_cast<std::size_t>(name - scope.names.begin()) < scope.bare) --scope.bare;
+    scope.names.erase(name);
+    count(scope, entry->second, 0);
+    if (scope.names.empty()) scopes_.erase(of);
     order_.erase(entry->second.place);
-    bytes_ -= entry->second.bytes;
     entries_.erase(entry);
 }
 
 void KeptAnswers::forget(const std::string& scope) {
     const std::lock_guard lock(mutex_);
-    for (auto of = of_scope_.find(scope); of != of_scope_.end(); of = of_scope_.find(scope))
-        erase(entries_.find(of->second.front()));
+    for (auto of = scopes_.find(scope); of != scopes_.end(); of = scopes_.find(scope))
+        erase(entries_.find(of->second.names.front()));
 }
 
 std::size_t KeptAnswers::size() const {

@@ -23,11 +23,12 @@ namespace tinsmith::server {
 ///
 /// Laws: of requests with one key in one scope, one at a time is let through, whatever the threads
 /// do; once it has ended with an answer, none is let through for as long as that is kept. An answer
-/// is kept for `age`, or until `per_scope` others of its scope or `bytes` of all came after it. One
-/// that takes more than a share of the bytes is kept without its body: the retry is told that, and
-/// still not done again. A key whose request is running is never dropped.
-/// Not promised: memory of a key that has been dropped; and over a restart that of what is not
-/// restored.
+/// is kept for `age`, or until `per_scope` others of its scope came after it. One that takes more
+/// than a share of the bytes is kept without its body: the retry is told that, and still not done
+/// again. Where all take more than `bytes`, the scope that takes the most gives its oldest body,
+/// and so on; only when there are none left are its oldest keys forgotten. So nobody loses an
+/// answer to others who keep more. A key whose request is running is never dropped. Not promised:
+/// memory of a key that has been dropped; and over a restart that of what is not restored.
 class KeptAnswers {
   public:
     using Time = std::chrono::steady_clock::time_point;
@@ -90,8 +91,19 @@ class KeptAnswers {
     };
     using Entries = std::map<Name, Entry>;
 
+    /// What is kept of one scope.
+    struct Scope {
+        std::deque<Name> names;  ///< in the order of `order_`
+        std::size_t bare = 0;    ///< so many in front are without body
+        std::size_t bytes = 0;
+    };
+    using Scopes = std::map<std::string, Scope>;
+
     void fill(Entries::iterator place, const Response& answer, Time since);
     void make_room();
+    Scopes::iterator largest(bool with_bodies);
+    void take_oldest_body(Scope& scope);
+    void count(Scope& scope, Entry& entry, std::size_t bytes);
     void erase(Entries::iterator entry);
 
     const Bounds bounds_;
@@ -99,7 +111,7 @@ class KeptAnswers {
     mutable std::mutex mutex_;
     Entries entries_;
     std::list<Name> order_;  ///< of those that are kept, the oldest in front
-    std::map<std::string, std::deque<Name>> of_scope_;  ///< the same by scope, in the same order
+    Scopes scopes_;          ///< the same by scope
     std::size_t bytes_ = 0;
     std::uint64_t count_ = 0;
 };

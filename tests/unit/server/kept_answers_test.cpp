@@ -97,7 +97,34 @@ TEST(KeptAnswers, StayWithinTheirBytes) {
     EXPECT_LE(answers.bytes(), 100'000U);
     EXPECT_GE(answers.size(), 10U);
     EXPECT_TRUE(is<Response>(answers.begin({"a", "99"}, "print")));
+    EXPECT_TRUE(is<KeptAnswers::NoBody>(answers.begin({"a", "0"}, "print")))
+        << "it is not done again, without its body";
+    for (int i = 100; i < 1000; ++i)
+        do_once(answers, {"a", std::to_string(i)});
+    EXPECT_LE(answers.bytes(), 100'000U);
     EXPECT_TRUE(is<KeptAnswers::GoOn>(answers.begin({"a", "0"}, "print")));
+}
+
+TEST(KeptAnswers, AreNotLostToOthersWhoKeepMore) {
+    KeptAnswers answers({.bytes = 100'000});
+    do_once(answers, {"small", "first"}, std::string(5'000, 'x'));
+    do_once(answers, {"small", "second"});
+    for (int i = 0; i < 50; ++i) {
+        do_once(answers, {"large", std::to_string(i)}, std::string(8'000, 'x'));
+        do_once(answers, {"many", std::to_string(i)}, std::string(2'000, 'x'));
+    }
+    EXPECT_LE(answers.bytes(), 100'000U);
+    EXPECT_TRUE(is<Response>(answers.begin({"small", "first"}, "print")));
+    EXPECT_TRUE(is<Response>(answers.begin({"small", "second"}, "print")));
+    EXPECT_TRUE(is<Response>(answers.begin({"large", "49"}, "print")));
+    for (int i = 0; i < 1000; ++i)
+        do_once(answers, {"large", "bare " + std::to_string(i)});
+    EXPECT_LE(answers.bytes(), 100'000U);
+    EXPECT_FALSE(is<KeptAnswers::GoOn>(answers.begin({"small", "first"}, "print")));
+    for (const char* scope : {"small", "large", "many"})
+        answers.forget(scope);
+    EXPECT_EQ(answers.size(), 0U);
+    EXPECT_EQ(answers.bytes(), 0U);
 }
 
 TEST(KeptAnswers, RememberWhatWasTooLargeToKeep) {
