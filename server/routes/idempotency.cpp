@@ -107,9 +107,10 @@ struct Refusals {
             .with("Retry-After", "1");
     }
     std::optional<Response> operator()(KeptAnswers::NoBody) const {
-        return refuse(request, ProblemType::AnswerNotKept,
-                      "This request was done once and is not done again; its answer was too large "
-                      "to be kept. GET the session or its mesh instead.");
+        return refuse(
+            request, ProblemType::AnswerNotKept,
+            "This request was done once and is not done again; its answer is not kept, for "
+            "it was large or others came after it. GET the session or its mesh instead.");
     }
 };
 
