@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include <gdal.h>
 
@@ -46,14 +47,15 @@ class Blocks {
                         GDALGetDataTypeSizeBits(GDALGetRasterDataType(band))));
     }
 
-    /// The first that does not inflate to its size, as "column_row".
-    std::optional<std::string> find_of_other_size() const {
+    /// The first that does not inflate to its size.
+    std::optional<BadCoding> find_of_other_size(const std::function<bool()>& may_go_on) const {
         const int across = (GDALGetRasterBandXSize(band_) + block_width_ - 1) / block_width_;
         const int down = (rows_ + block_height_ - 1) / block_height_;
         for (int y = 0; y < down; ++y) {
             for (int x = 0; x < across; ++x) {
                 std::string name = std::to_string(x) + "_" + std::to_string(y);
-                if (!is_of_its_size(name, y)) return name;
+                if (!may_go_on()) return BadCoding{{}, std::move(name), true};
+                if (!is_of_its_size(name, y)) return BadCoding{{}, std::move(name)};
             }
         }
         return std::nullopt;
@@ -91,16 +93,15 @@ class Blocks {
 
 }  // namespace
 
-std::optional<BadCoding> find_bad_coding(std::string_view bytes, void* band) {
+std::optional<BadCoding> find_bad_coding(std::string_view bytes, void* band,
+                                         const std::function<bool()>& may_go_on) {
     const std::string_view coding =
         item_of(GDALGetBandDataset(band), "COMPRESSION", "IMAGE_STRUCTURE");
     if (coding.empty()) return std::nullopt;
     if (std::ranges::find(kCodings, coding) == kCodings.end())
         return BadCoding{std::string(coding), {}};
     if (coding != "DEFLATE") return std::nullopt;
-    auto wrong = Blocks(bytes, band).find_of_other_size();
-    if (!wrong) return std::nullopt;
-    return BadCoding{{}, *std::move(wrong)};
+    return Blocks(bytes, band).find_of_other_size(may_go_on);
 }
 
 }  // namespace tinsmith::api

@@ -42,6 +42,9 @@ std::string too_many_bands(std::uint64_t bands) {
 
 /// A block of a raster is held decoded: one may be larger than the raster, not without bound.
 constexpr std::size_t kSmallestBlockLimit = std::size_t{4096} * 4096;
+/// All blocks together may have so many times the raster's pixels: a column of one pixel in wide
+/// tiles, each the same few bytes of the file, would be decoded for hours.
+constexpr std::uint64_t kMostInBlocks = 4;
 
 struct Refused {
     FaultKind kind;
@@ -138,13 +141,20 @@ std::optional<Refused> Raster::check_band() {
     int block_width = 0;
     int block_height = 0;
     GDALGetBlockSize(band_, &block_width, &block_height);
-    const auto block = static_cast<std::uint64_t>(std::max(block_width, 1)) *
-                       static_cast<std::uint64_t>(std::max(block_height, 1));
-    if (block > std::max(limits_.max_vertices, kSmallestBlockLimit)) {
+    const auto across = static_cast<std::uint64_t>(std::max(block_width, 1));
+    const auto down = static_cast<std::uint64_t>(std::max(block_height, 1));
+    const std::uint64_t block = across * down;
+    const std::uint64_t all =
+        (width_ + across - 1) / across * ((height_ + down - 1) / down) * block;
+    const std::uint64_t pixels = std::max<std::uint64_t>(width_ * height_, kSmallestBlockLimit);
+    if (block > std::max(limits_.max_vertices, kSmallestBlockLimit) ||
+        all / kMostInBlocks > pixels) {
         return refused(FaultKind::TooLarge, "TIFF_BLOCK_SIZE",
-                       "The raster is stored in tiles of " + std::to_string(block) +
-                           " pixels each; no more than " + std::to_string(kSmallestBlockLimit) +
-                           " are taken here.");
+                       "The raster of " + std::to_string(width_) + " by " +
+                           std::to_string(height_) + " pixels is stored in tiles of " +
+                           std::to_string(block) + " pixels each; no more than " +
+                           std::to_string(kSmallestBlockLimit) +
+                           " are taken here, nor so many that are mostly outside of the raster.");
     }
     int has_no_data = 0;
     const double no_data = GDALGetRasterNoDataValue(band_, &has_no_data);
@@ -270,8 +280,10 @@ std::optional<Refused> Raster::check_coding() const {
     std::vector<GDALRasterBandH> read{band_};
     if (has_mask()) read.push_back(GDALGetMaskBand(band_));
     for (const GDALRasterBandH band : read) {
-        const auto bad = find_bad_coding(bytes_, band);
+        const auto bad = find_bad_coding(
+            bytes_, band, [this] { return !limits_.progress || limits_.progress(0.0); });
         if (!bad) continue;
+        if (bad->is_stopped) return Refused{FaultKind::Stopped, reading_stopped()};
         if (bad->coding.empty())
             return refused(FaultKind::Invalid, "TIFF_DAMAGED",
                            "Block " + bad->block +

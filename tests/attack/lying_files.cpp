@@ -150,6 +150,8 @@ std::vector<LyingFile> lying_tiffs() {
          tiff(floats(4, 4, too_long), stored), 422, "TIFF_DAMAGED"},
         {"a tile of 4 GiB", type, tiff(floats(4, 4, tile(32'768, 64)), four), 413},
         {"a tile of 16 EiB", type, tiff(floats(4, 4, tile(0xFFFFFFF0, 64)), four), 400},
+        {"a column of one pixel in wide tiles", type,
+         tiff(floats(1, 1'000'000, tile(4096, 64)), four), 413, "TIFF_BLOCK_SIZE"},
         {"a bomb of deflate beyond what is taken", type,
          tiff(floats(12'000, 12'000, compressed), bomb), 413},
         {"a directory of 65,535 entries", type, directory_of_65535, 400},
