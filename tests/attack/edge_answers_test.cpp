@@ -1,84 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What HAProxy answers by itself where the server behind it does not, or the client sends no body.
-#include <array>
-#include <atomic>
 #include <cstdlib>
-#include <list>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
+#include "tests/attack/bad_server.hpp"
 #include "tests/attack/edge_problem.hpp"
 #include "tests/attack/proxy.hpp"
 
 namespace tinsmith::e2e {
 namespace {
-
-const std::string kReady = "HTTP/1.1 200 OK\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-
-/// A server that says it is ready and then does what the path says.
-class BadServer {
-  public:
-    BadServer() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof address;
-        auto* any = static_cast<sockaddr*>(static_cast<void*>(&address));
-        ::bind(listener_, any, size);
-        ::listen(listener_, 100);
-        ::getsockname(listener_, any, &size);
-        port_ = ntohs(address.sin_port);
-        thread_ = std::thread([this] { serve(); });
-    }
-    ~BadServer() { stop(); }
-    BadServer(const BadServer&) = delete;
-    BadServer& operator=(const BadServer&) = delete;
-
-    int port() const { return port_; }
-    void stop() {
-        if (!thread_.joinable()) return;
-        ::shutdown(listener_, SHUT_RDWR);
-        thread_.join();
-        ::close(listener_);
-        for (const int each : held_)
-            ::close(each);
-    }
-
-  private:
-    void serve() {
-        for (;;) {
-            const int client = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-            if (client < 0) return;
-            std::array<char, 4096> bytes{};
-            std::string head;
-            while (head.find("\r\n\r\n") == std::string::npos) {
-                const ssize_t got = ::recv(client, bytes.data(), bytes.size(), 0);
-                if (got <= 0) break;
-                head.append(bytes.data(), static_cast<std::size_t>(got));
-            }
-            if (head.find(" /v1/hangs") != std::string::npos) {
-                held_.push_back(client);
-                continue;
-            }
-            std::string answer = kReady;
-            if (head.find(" /v1/closes") != std::string::npos) answer.clear();
-            if (head.find(" /v1/babbles") != std::string::npos) answer = "nonsense\r\n\r\n";
-            ::send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
-            ::close(client);
-        }
-    }
-
-    int listener_ = -1;
-    int port_ = 0;
-    std::list<int> held_;
-    std::thread thread_;
-};
 
 class EdgeAlone : public testing::Test {
   protected:

@@ -46,9 +46,8 @@ std::string changed(std::string text, const Proxy::Changes& changes) {
 }
 
 [[noreturn]] void become_proxy(const std::string& program, const std::string& configuration,
-                               int port, int server_port, int output) {
+                               int port, const std::string& server, int output) {
     const std::string at = std::to_string(port);
-    const std::string server = "127.0.0.1:" + std::to_string(server_port);
     ::setenv("TINSMITH_EDGE_PORT", at.c_str(), 1);
     ::setenv("TINSMITH_SERVER", server.c_str(), 1);
     ::dup2(output, STDOUT_FILENO);
@@ -65,14 +64,17 @@ std::string Proxy::program() {
     return {};
 }
 
-Proxy::Proxy(int server_port, const Changes& changes) : output_(scratch_.file("proxy")) {
+Proxy::Proxy(int server_port, const Changes& changes)
+    : Proxy("127.0.0.1:" + std::to_string(server_port), changes) {}
+
+Proxy::Proxy(const std::string& server, const Changes& changes) : output_(scratch_.file("proxy")) {
     const std::string configuration = scratch_.file("haproxy.cfg");
     write_content(configuration,
                   changed(content_of(TINSMITH_SOURCE_DIR "/docker/haproxy.cfg"), changes));
     const int port = free_port();
     const int file = ::open(output_.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600);
     pid_ = ::fork();
-    if (pid_ == 0) become_proxy(program(), configuration, port, server_port, file);
+    if (pid_ == 0) become_proxy(program(), configuration, port, server, file);
     ::close(file);
     // It takes the server for sound until a check says otherwise, so one good answer is enough.
     for (int i = 0; i < 500 && port_ == 0 && is_running(); ++i) {

@@ -19,6 +19,8 @@ class Proxy {
     using Changes = std::vector<std::pair<std::string, std::string>>;
 
     explicit Proxy(int server_port, const Changes& changes = {});
+    /// `server` is a name or an address, with its port.
+    explicit Proxy(const std::string& server, const Changes& changes = {});
     ~Proxy();
     Proxy(const Proxy&) = delete;
     Proxy& operator=(const Proxy&) = delete;
