@@ -82,7 +82,7 @@ TEST_F(Edge, RefusesInTheSameForm) {
     expect_problem(post("Transfer-Encoding: chunked\r\n", "0\r\n\r\n"), 411, "length-required");
     expect_problem(post("Content-Length: 5\r\nContent-Encoding: gzip\r\n", "hello"), 415,
                    "unsupported-encoding");
-    expect_problem(post("Content-Length: 268435457\r\nExpect: 100-continue\r\n"), 413, "too-large");
+    expect_problem(post("Content-Length: 25165825\r\nExpect: 100-continue\r\n"), 413, "too-large");
     // What HAProxy cannot read as HTTP it answers in a form of its own, which nothing changes.
     EXPECT_EQ(send(post("Content-Length: abc\r\n")).status, 400);
     EXPECT_EQ(send(post("Content-Length: 1\r\nContent-Length: 5\r\n", "hello")).status, 400);
