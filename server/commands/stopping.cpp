@@ -16,6 +16,12 @@ namespace {
 /// For which the last line of the log is waited for: nobody may read it.
 constexpr std::chrono::milliseconds kLastLine{200};
 
+constexpr int kEndedBySignal = 128;  // and the signal's number, as shells tell it
+
+void end_at_once(int signal) {
+    ::_exit(kEndedBySignal + signal);
+}
+
 void tell_forced() {
     const auto told = std::make_shared<std::promise<void>>();
     std::thread([told] {
@@ -54,6 +60,11 @@ void StopSignals::wake() {
 }
 
 void StopSignals::release() const {
+    // What the system does by itself it does not do to the first process of a container.
+    struct sigaction action {};
+    action.sa_handler = end_at_once;
+    for (const int signal : {SIGINT, SIGTERM})
+        ::sigaction(signal, &action, nullptr);
     pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);
 }
 

@@ -15,8 +15,9 @@ namespace tinsmith::server {
 inline constexpr std::chrono::seconds kLastWait{5};
 
 /// SIGINT and SIGTERM, taken off every thread that is started later so that only `wait` meets
-/// them: no code of ours runs in a signal handler. SIGXFSZ is ignored, and SIGUSR1 is ours. With
-/// `hangup` SIGHUP is taken off them too, and means that something is to be read again.
+/// them: no code of ours runs in a signal handler before `release`. SIGXFSZ is ignored, and SIGUSR1
+/// is ours. With `hangup` SIGHUP is taken off them too, and means that something is to be read
+/// again.
 class StopSignals {
   public:
     explicit StopSignals(bool hangup = false);
@@ -26,7 +27,8 @@ class StopSignals {
     /// Ends the wait, or nothing where it has ended. From any thread.
     static void wake();
 
-    /// From now on SIGINT and SIGTERM end the process at once: for those who press Ctrl-C twice.
+    /// From now on SIGINT and SIGTERM end the process at once, with exit code 128 + the signal: for
+    /// those who press Ctrl-C twice. That holds for the first process of a container too.
     void release() const;
 
   private:

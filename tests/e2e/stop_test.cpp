@@ -185,6 +185,32 @@ TEST(ServiceStop, ASecondSignalEndsItAtOnce) {
     EXPECT_EQ(server.program().wait(seconds(60)), 128 + SIGTERM);
 }
 
+/// The system spares the first process of a container the signals that it does nothing about.
+TEST(ServiceStop, ASecondSignalEndsTheFirstProcessOfAContainer) {
+    if (std::system("unshare --pid --fork true 2>/dev/null") != 0)
+        GTEST_SKIP() << "this system makes no process the first of its own";
+    const ScratchDirectory scratch;
+    const std::string first = scratch.file("first");
+    const char* given = std::getenv("TINSMITH_PROGRAM");
+    const std::string other = given != nullptr ? given : "";
+    write_content(first, "#!/bin/sh\nexec unshare --pid --fork --kill-child '" +
+                             (other.empty() ? std::string(TINSMITH_BINARY) : other) + "' \"$@\"\n");
+    ASSERT_EQ(::chmod(first.c_str(), 0700), 0);
+    ::setenv("TINSMITH_PROGRAM", first.c_str(), 1);
+    StartingServer server({"--grace", "600"});
+    other.empty() ? ::unsetenv("TINSMITH_PROGRAM") : ::setenv("TINSMITH_PROGRAM", other.c_str(), 1);
+    ASSERT_NE(server.port(), 0) << server.program().output();
+    const std::string outer = std::to_string(server.program().pid());
+    const pid_t inner =
+        std::atoi(content_of("/proc/" + outer + "/task/" + outer + "/children").c_str());
+    ASSERT_GT(inner, 0);
+    ::kill(inner, SIGTERM);
+    ASSERT_TRUE(comes_to_log(server.program(), "stopping"));
+    EXPECT_TRUE(server.program().is_running());
+    ::kill(inner, SIGTERM);
+    EXPECT_EQ(server.program().wait(seconds(60)), 128 + SIGTERM);
+}
+
 TEST(ServiceStop, SaysThatItDrainsWhileItStillListens) {
     ServerUnderTest server({"--drain-delay", "600"});
     ASSERT_NE(server.port(), 0) << server.program().output();
