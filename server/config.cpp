@@ -343,7 +343,12 @@ Command parse_command_line(int argc, const char* const* argv) {
         std::cerr << fault << "\nRun with --help for more information.\n";
         return kExitUsage;
     }
-    if (serve_command->parsed()) return serve;
+    if (serve_command->parsed()) {
+        // Each has a thread: what is told at /v1/limits is what can be.
+        std::size_t& max_requests = serve.http.limits.max_requests;
+        max_requests = std::min(max_requests, serve.http.threads);
+        return serve;
+    }
     if (integrate_command->parsed()) return integrate;
     if (check_command->parsed()) return check;
     if (key_command->parsed()) return key;

@@ -19,7 +19,7 @@ struct Limits {
     std::size_t max_history_bytes = std::size_t{256} << 20;  ///< that they hold, of one session
     std::uint64_t max_crossings = 50'000'000;                ///< of one request
     double max_edit_seconds = 60.0;                          ///< of one request
-    std::size_t max_requests = 64;                           ///< at the same time, without jobs
+    std::size_t max_requests = 32;                           ///< at the same time, without jobs
     std::size_t max_points = 100'000;                        ///< of one question for elevations
     std::uint64_t max_profile_crossings = 1'000'000;   ///< of one profile: its answer's points
     std::size_t job_threads = 2;                       ///< requests done as jobs at a time

@@ -145,6 +145,17 @@ TEST(CommandLine, TakesTheEnvironmentToo) {
     EXPECT_EQ(config.http.limits.max_sessions, 4U);
 }
 
+TEST(CommandLine, TellsOfNoMoreRequestsThanThreads) {
+    const auto max_requests = [](std::initializer_list<const char*> arguments) {
+        return serve(arguments).http.limits.max_requests;
+    };
+    EXPECT_EQ(max_requests({}), HttpOptions{}.threads);
+    EXPECT_EQ(max_requests({"--threads", "4"}), 4U);
+    EXPECT_EQ(max_requests({"--max-requests", "64"}), HttpOptions{}.threads);
+    EXPECT_EQ(max_requests({"--max-requests", "5"}), 5U);
+    EXPECT_EQ(max_requests({"--max-requests", "64", "--threads", "48"}), 48U);
+}
+
 TEST(CommandLine, HasAFlagForEveryLimit) {
     const auto value_of = [](const ServeConfig& config, const std::string& name) {
         Services services(config.http.limits);
