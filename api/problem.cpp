@@ -36,7 +36,7 @@ constexpr std::array kTable{
     Row{NotAcceptable, "not-acceptable", "No answer in an accepted media type", 406},
     Row{LengthRequired, "length-required", "Content-Length is required", 411},
     Row{BodyTooLarge, "too-large", "The request is too large", 413},
-    Row{PathTooLong, "path-too-long", "The path is too long", 414},
+    Row{PathTooLong, "path-too-long", "The path or query is too long", 414},
     Row{TooManyHeaders, "too-many-headers", "The head has too many or too long fields", 431},
     Row{RangeRefused, "range-refused", "The range cannot be served", 416},
     Row{ExpectationFailed, "expectation-failed", "The expectation cannot be met", 417},

@@ -99,6 +99,11 @@ void Connection::use(std::size_t count) {
     if (buffer_.capacity() > kKeptCapacity) buffer_ = {};
 }
 
+void Connection::cut(std::size_t begin, std::size_t count) {
+    buffer_.erase(used_ + begin, count);
+    looked_at_ = 0;
+}
+
 std::size_t Connection::size_of_head() {
     while (unread().starts_with("\r\n"))
         use(2);

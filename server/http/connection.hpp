@@ -45,6 +45,8 @@ class Connection {
     Got receive(std::size_t most);
     /// Uses up the first bytes of `unread`. Requires: there are so many.
     void use(std::size_t count);
+    /// Takes bytes out of `unread`, as if they had not come. Requires: there are so many.
+    void cut(std::size_t begin, std::size_t count);
     /// How long the head at the beginning of `unread` is; 0: not whole yet. Empty lines before a
     /// head are used up (RFC 9112 2.2).
     std::size_t size_of_head();

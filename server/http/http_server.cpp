@@ -107,9 +107,13 @@ class HttpServer::Impl {
                  "The request's head took too long to arrive; nothing was done. Send it again.",
                  {}});
         }
-        const std::size_t size = connection.size_of_head();
+        std::size_t size = connection.size_of_head();
         if (const auto problem = check_head_bytes(connection.unread().substr(0, size)))
             return protocol_.refuse_bytes(connection, *problem);
+        while (const auto range = range_of_other_unit(connection.unread().substr(0, size))) {
+            connection.cut(range->begin, range->size);
+            size -= range->size;
+        }
         return protocol_.exchange(connection);
     }
 

@@ -17,6 +17,13 @@ using api::ProblemType;
 /// The library takes an empty line after any line, whatever ended that one.
 constexpr std::string_view kHeadEnd = "\n\r\n";
 
+/// Of a header's name, to say which.
+constexpr std::size_t kToldOfName = 64;
+
+constexpr std::string_view kRange = "range";
+/// The one unit of ranges that is known, as the library wants it.
+constexpr std::string_view kBytes = "bytes=";
+
 Problem bad(std::string detail) {
     return {ProblemType::BadRequest, std::move(detail), {}};
 }
@@ -36,8 +43,23 @@ bool is_token(std::string_view name) {
     });
 }
 
+/// Of a request line that is too long, whole or not: what of it is.
+Problem target_too_long(std::string_view line) {
+    const std::string_view target = line.substr(std::min(line.find(' '), line.size() - 1) + 1);
+    if (target.find_first_of(" ?#") <= kMaxPathBytes) {
+        return {ProblemType::PathTooLong,
+                "The request line, which has the query, is longer than " +
+                    std::to_string(kMaxLineBytes) + " bytes.",
+                {}};
+    }
+    return {ProblemType::PathTooLong,
+            "The path is longer than " + std::to_string(kMaxPathBytes) + " bytes.",
+            {}};
+}
+
 /// A method, a target and a version, with one blank between them.
 std::optional<Problem> check_request_line(std::string_view line) {
+    if (line.size() > kMaxLineBytes) return target_too_long(line);
     const std::size_t method = line.find(' ');
     const std::size_t target = line.rfind(' ');
     if (method == std::string_view::npos || target <= method + 1 ||
@@ -60,6 +82,13 @@ std::optional<Problem> check_header(std::string_view line) {
     const std::string_view name = line.substr(0, colon);
     if (!is_token(name))
         return bad("A header's name has a blank or another character that none may have.");
+    if (line.size() > kMaxLineBytes) {
+        return Problem{ProblemType::TooManyHeaders,
+                       "The header " + std::string(name.substr(0, kToldOfName)) +
+                           " is longer than " + std::to_string(kMaxLineBytes) +
+                           " bytes, its name included.",
+                       {}};
+    }
     const std::string key = api::lower_case(name);
     if (key != "content-length" && key != "transfer-encoding") return std::nullopt;
     const std::string_view value = api::trimmed(line.substr(colon + 1));
@@ -98,12 +127,21 @@ std::optional<Problem> check_head_bytes(std::string_view head) {
     return std::nullopt;
 }
 
-Problem head_too_large(std::string_view bytes) {
-    if (bytes.find('\n') == std::string_view::npos) {
-        return {ProblemType::PathTooLong,
-                "The path is longer than " + std::to_string(kMaxPathBytes) + " bytes.",
-                {}};
+std::optional<HeadPart> range_of_other_unit(std::string_view head) {
+    for (std::size_t begin = head.find('\n') + 1; begin < head.size();) {
+        const std::size_t end = head.find('\n', begin) + 1;
+        const std::string_view line = head.substr(begin, end - begin);
+        const std::size_t colon = line.find(':');
+        if (colon == kRange.size() && api::lower_case(line.substr(0, colon)) == kRange &&
+            !api::trimmed(line.substr(colon + 1)).starts_with(kBytes))
+            return HeadPart{begin, line.size()};
+        begin = end;
     }
+    return std::nullopt;
+}
+
+Problem head_too_large(std::string_view bytes) {
+    if (bytes.find('\n') == std::string_view::npos) return target_too_long(bytes);
     return {ProblemType::TooManyHeaders,
             "The request's head is longer than " + std::to_string(kMaxHeadBytes) + " bytes.",
             {}};

@@ -73,9 +73,46 @@ TEST(RequestHead, CountsHeaders) {
     EXPECT_EQ(verdict(head(kMaxHeaders + 1)), 431);
 }
 
+TEST(RequestHead, BoundsALine) {
+    const auto told = [](const std::string& head) {
+        const auto problem = check_head_bytes(head);
+        return problem ? std::to_string(api::problem_status(problem->type)) + " " + problem->detail
+                       : std::string();
+    };
+    const auto header = [](std::size_t size) {
+        return kGet + "X-Long: " + std::string(size - 8, 'a') + "\r\n\r\n";
+    };
+    EXPECT_EQ(told(header(kMaxLineBytes)), "");
+    EXPECT_EQ(told(header(kMaxLineBytes + 1)),
+              "431 The header X-Long is longer than 8190 bytes, its name included.");
+    const auto line = [](const std::string& begin, std::size_t size) {
+        return begin + std::string(size - begin.size() - 9, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n";
+    };
+    EXPECT_EQ(told(line("GET /?a=", kMaxLineBytes)), "");
+    EXPECT_EQ(told(line("GET /?a=", kMaxLineBytes + 1)),
+              "414 The request line, which has the query, is longer than 8190 bytes.");
+    EXPECT_EQ(told(line("GET /", kMaxLineBytes + 1)), "414 The path is longer than 512 bytes.");
+}
+
+TEST(RequestHead, FindsRangesOfOtherUnits) {
+    const auto found = [](const std::string& headers) {
+        const std::string head = kGet + headers + "\r\n";
+        const auto range = range_of_other_unit(head);
+        return range ? head.substr(range->begin, range->size) : std::string();
+    };
+    EXPECT_EQ(found(""), "");
+    EXPECT_EQ(found("Range: bytes=0-5\r\n"), "");
+    EXPECT_EQ(found("range:bytes=0-1,2-3\r\nX-Range: items=0-5\r\n"), "");
+    EXPECT_EQ(found("Range: items=0-5\r\n"), "Range: items=0-5\r\n");
+    EXPECT_EQ(found("Range: bytes=0-5\r\nRANGE:x\r\nX: y\r\n"), "RANGE:x\r\n");
+    EXPECT_EQ(found("Range:\r\n"), "Range:\r\n");
+}
+
 TEST(RequestHead, TellsALongPathFromLongHeaders) {
     const std::string much(kMaxHeadBytes, 'a');
     EXPECT_EQ(head_too_large("GET /" + much).type, api::ProblemType::PathTooLong);
+    EXPECT_NE(head_too_large("GET /" + much).detail.find("path"), std::string::npos);
+    EXPECT_NE(head_too_large("GET /?" + much).detail.find("query"), std::string::npos);
     EXPECT_EQ(head_too_large(kGet + "X: " + much).type, api::ProblemType::TooManyHeaders);
 }
 
