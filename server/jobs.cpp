@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "api/problem.hpp"
+#include "server/heap.hpp"
 #include "server/log.hpp"
 #include "server/random_id.hpp"
 #include "server/reply.hpp"
@@ -160,6 +161,7 @@ void Jobs::run_jobs() {
         const JobPtr job = std::move(queue_.front());
         queue_.pop_front();
         job->view.state = api::JobState::Running;
+        const bool is_large = job->request.body.size() >= kLargeBody;
         lock.unlock();
         const Time start = clock_();
         Response answer;
@@ -176,6 +178,10 @@ void Jobs::run_jobs() {
         log_end(job->view.id, job->request, answer, clock_() - start);
         lock.lock();
         end(*job, std::move(answer));
+        if (!is_large) continue;
+        lock.unlock();
+        give_back_memory();
+        lock.lock();
     }
 }
 

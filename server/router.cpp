@@ -116,10 +116,22 @@ Response answer_safely(const Request& request, const std::function<Response()>& 
 
 Response Router::handle(const Request& request) const {
     const RouteMeter* route = nullptr;
-    Response response = answer_safely(request, [&] { return dispatch(request, route); });
+    Response response = answer_safely(request, [&] {
+        Way way = way_of(request);
+        route = way.meter;
+        return way.entry ? way.entry->route.handler(request, way.arguments)
+                         : std::move(way.instead);
+    });
     response.with("X-Request-Id", request.id);
     response.route = route;  // of this request, where the answer is that of another
     return response;
+}
+
+std::optional<Response> Router::refusal_of(const Request& head) const {
+    Way way = way_of(head);
+    if (way.entry) return std::nullopt;
+    way.instead.route = way.meter;
+    return std::move(way.instead);
 }
 
 std::vector<const Router::Entry*> Router::entries_at(
@@ -131,36 +143,40 @@ std::vector<const Router::Entry*> Router::entries_at(
     return found;
 }
 
-Response Router::dispatch(const Request& request, const RouteMeter*& route) const {
+Router::Way Router::way_of(const Request& request) const {
+    Way way;
     const auto segments = split_path(request.path);
     const auto entries = segments ? entries_at(*segments) : std::vector<const Entry*>{};
     if (entries.empty()) {
-        return refuse(request, api::ProblemType::NoSuchPath,
-                      "Nothing is served at this path. The sessions are at /v1/sessions.");
+        way.instead = refuse(request, api::ProblemType::NoSuchPath,
+                             "Nothing is served at this path. The sessions are at /v1/sessions.");
+        return way;
     }
-    route = entries.front()->meter;
+    way.meter = entries.front()->meter;
     const std::string wanted = request.method == "HEAD" ? "GET" : request.method;
     std::string allow = "OPTIONS";
     for (const Entry* entry : entries) {
         if (entry->route.method == wanted) {
-            route = entry->meter;
+            way.meter = entry->meter;
             auto faults = query_faults(request, entry->route.parameters);
             if (faults.empty()) {
-                return entry->route.handler(request, arguments_of(entry->segments, *segments));
+                way.entry = entry;
+                way.arguments = arguments_of(entry->segments, *segments);
+                return way;
             }
             std::string detail = faults.front().detail;
-            return refuse(request, {api::ProblemType::UnknownParameter, std::move(detail),
-                                    std::move(faults)});
+            way.instead = refuse(request, {api::ProblemType::UnknownParameter, std::move(detail),
+                                           std::move(faults)});
+            return way;
         }
         allow += ", " + entry->route.method;
         if (entry->route.method == "GET") allow += ", HEAD";
     }
-    Response response = request.method == "OPTIONS"
-                            ? ok({}, {})
-                            : refuse(request, api::ProblemType::MethodNotAllowed,
-                                     "This path answers to: " + allow + ".");
-    response.with("Allow", allow);
-    return response;
+    way.instead = request.method == "OPTIONS" ? ok({}, {})
+                                              : refuse(request, api::ProblemType::MethodNotAllowed,
+                                                       "This path answers to: " + allow + ".");
+    way.instead.with("Allow", allow);
+    return way;
 }
 
 }  // namespace tinsmith::server

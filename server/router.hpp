@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +45,10 @@ class Router {
 
     Response handle(const Request& request) const;
 
+    /// What `handle` would answer without asking a handler, whatever the body; nothing: a handler
+    /// answers. Without X-Request-Id.
+    std::optional<Response> refusal_of(const Request& head) const;
+
   private:
     struct Entry {
         Route route;
@@ -51,8 +56,15 @@ class Router {
         const RouteMeter* meter = nullptr;
     };
 
-    /// `route` becomes that of the path, if it has one.
-    Response dispatch(const Request& request, const RouteMeter*& route) const;
+    /// Where a request goes.
+    struct Way {
+        const Entry* entry = nullptr;  ///< null: nowhere, and `instead` is the answer
+        PathArguments arguments;
+        Response instead;
+        const RouteMeter* meter = nullptr;  ///< of the path, if it has one
+    };
+
+    Way way_of(const Request& request) const;
     std::vector<const Entry*> entries_at(const std::vector<std::string>& segments) const;
 
     std::vector<Entry> entries_;

@@ -10,6 +10,8 @@
 #include "server/commands/stopping.hpp"
 #include "server/demo.hpp"
 #include "server/file_io.hpp"
+#include "server/heap.hpp"
+#include "server/http/guard.hpp"
 #include "server/http/http_server.hpp"
 #include "server/keys/gate.hpp"
 #include "server/log.hpp"
@@ -236,16 +238,20 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
     }
     const Router router(make_routes(services), &services.metrics);
     const Router page_router(make_page_routes(services), &services.metrics);
+    const auto router_of = [&](const Request& request) -> const Router& {
+        return request.path.starts_with(kPageFolder) ? page_router : router;
+    };
     HttpServer server(
         config.http,
-        {[&gate, &turnstile](Request& head) {
+        {[&](Request& head) {
              auto refusal = gate.admit(head);
-             return refusal ? refusal : turnstile.admit(head);
+             if (!refusal) refusal = turnstile.admit(head);
+             if (!refusal && brings_body(head)) refusal = router_of(head).refusal_of(head);
+             return refusal;
          },
          [&](const Request& request) {
              const Metrics::InFlight one(services.metrics);
-             return request.path.starts_with(kPageFolder) ? page_router.handle(request)
-                                                          : router.handle(request);
+             return router_of(request).handle(request);
          },
          [&services](const Request& request, Response& response) {
              finish_answer(services.policy, request, response);
@@ -270,6 +276,7 @@ int serve(const ServeConfig& config, const StopSignals& signals, Watchdog& watch
 }  // namespace
 
 int run_serve(const ServeConfig& config) {
+    bound_kept_memory();
     ServingKeys keys(config);
     const StopSignals signals(keys.has_file());  // before the first thread: it inherits the mask
     set_log_format(config.log_format);

@@ -86,9 +86,12 @@ bool asks_to_close(const Request& request) {
     return false;
 }
 
+bool brings_body(const Request& request) {
+    return request.header("content-length").value_or("0") != "0";
+}
+
 bool awaits_invitation(const Request& request) {
-    return request.header("content-length").value_or("0") != "0" &&
-           expectations(request).find(kInvitation) != std::string::npos;
+    return brings_body(request) && expectations(request).find(kInvitation) != std::string::npos;
 }
 
 std::optional<Problem> check_request_head(const Request& request, const Limits& limits) {

@@ -18,6 +18,9 @@ std::optional<api::Problem> check_request_head(const Request& request, const Lim
 /// True for the methods whose body the server reads.
 bool takes_body(const std::string& method);
 
+/// True where its head says that a body follows.
+bool brings_body(const Request& request);
+
 /// True where the client wants no further request on its connection (RFC 9112 9.6).
 bool asks_to_close(const Request& request);
 

@@ -10,6 +10,7 @@
 #include <httplib.h>
 
 #include "api/field_list.hpp"
+#include "server/heap.hpp"
 #include "server/http/guard.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/library.hpp"
@@ -70,6 +71,7 @@ struct Exchange {
     ConnectionStream& stream;
     Request head;              ///< of a request whose body is being read
     Response answer;           ///< as the library was told it, but for its body
+    std::size_t read = 0;      ///< bytes of a body
     bool is_for_head = false;  ///< it goes without its body
     bool close = false;        ///< it is the last of its connection
 };
@@ -105,20 +107,11 @@ class Protocol::Impl {
     }
 
     After exchange(Connection& connection) {
-        ConnectionStream stream(connection, options_.wait, pace_);
-        Exchange exchange{stream, {}, {}};
-        current_exchange = &exchange;
-        bool closed = false, fine = false;
-        try {
-            fine = library_.exchange(stream, closed);
-        } catch (const std::exception& failure) {
-            log_event(LogLevel::Error, "defect", failure.what());
-        }
-        current_exchange = nullptr;
-        std::string_view body;
-        if (!exchange.is_for_head) body = exchange.answer.sent();
-        if (!fine || !stream.flush(body)) return After::Drop;
-        return closed || exchange.close ? After::Part : After::Keep;
+        std::size_t held = 0;
+        const After after = converse(connection, held);
+        // Its client has its answer by now.
+        if (held >= kLargeBody) give_back_memory();
+        return after;
     }
 
     After refuse_bytes(Connection& connection, const api::Problem& problem, bool may_wait) const {
@@ -140,6 +133,25 @@ class Protocol::Impl {
     void drain() { draining_ = true; }
 
   private:
+    /// `held` becomes what it held of bodies, and has let go of.
+    After converse(Connection& connection, std::size_t& held) {
+        ConnectionStream stream(connection, options_.wait, pace_);
+        Exchange exchange{stream, {}, {}};
+        current_exchange = &exchange;
+        bool closed = false, fine = false;
+        try {
+            fine = library_.exchange(stream, closed);
+        } catch (const std::exception& failure) {
+            log_event(LogLevel::Error, "defect", failure.what());
+        }
+        current_exchange = nullptr;
+        std::string_view body;
+        if (!exchange.is_for_head) body = exchange.answer.sent();
+        held = exchange.read + exchange.answer.body.size();
+        if (!fine || !stream.flush(body)) return After::Drop;
+        return closed || exchange.close ? After::Part : After::Keep;
+    }
+
     void install_handlers() {
         library_.set_pre_routing_handler(
             [this](const httplib::Request& raw, httplib::Response& out) {
@@ -197,7 +209,7 @@ class Protocol::Impl {
         auto response = problem ? refuse(request, *problem) : calls_.admit(request);
         if (!response) return std::nullopt;
         response->with("X-Request-Id", request.id);
-        response->close = problem || takes_body(request.method);  // what is not read stays there
+        response->close = problem || brings_body(request);  // what is not read stays there
         return response;
     }
 
@@ -234,10 +246,12 @@ class Protocol::Impl {
                           const httplib::ContentReader& content) const {
         const auto start = Clock::now();
         Request request = std::move(exchange_here().head);
+        std::size_t& read = exchange_here().read;
         bool late = false;
         const bool whole = content([&](const char* data, std::size_t size) {
             late = Clock::now() - start > options_.body_deadline ||
                    pace_.is_too_slow(start, request.body.size() + size);
+            read += size;
             if (!late) request.body.append(data, size);
             return !late;
         });
@@ -274,8 +288,8 @@ class Protocol::Impl {
         const api::ProblemType type = api::problem_of_status(out.status);
         Response response = refuse(
             request, type,
-            type == api::ProblemType::PathTooLong
-                ? "The path is longer than " + std::to_string(kMaxPathBytes) + " bytes."
+            type == api::ProblemType::RangeRefused
+                ? "The Range cannot be read. Ask for one range, or for the whole."
             : type == api::ProblemType::Internal
                 ? "A defect of the server, not of the request. Report it with the request id."
                 : "The request line or a header could not be read as HTTP/1.1.");

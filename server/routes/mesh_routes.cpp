@@ -12,6 +12,7 @@
 #include "api/formats/obj_writer.hpp"
 #include "api/responses.hpp"
 #include "server/answer_finish.hpp"
+#include "server/heap.hpp"
 #include "server/mesh_source.hpp"
 #include "server/polygon_reading.hpp"
 #include "server/reply.hpp"

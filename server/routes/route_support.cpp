@@ -6,8 +6,6 @@
 #include <charconv>
 #include <utility>
 
-#include <malloc.h>
-
 #include "api/crs.hpp"
 #include "api/media_type.hpp"
 #include "api/problem.hpp"
@@ -333,10 +331,6 @@ std::optional<Response> refusal_of_memory(Services& services, const Request& req
     return refuse(request, api::ProblemType::OutOfMemory,
                   "All meshes together have passed the limit max_memory_bytes of " +
                       std::to_string(most) + ". DELETE sessions that are not needed.");
-}
-
-void give_back_memory() {
-    ::malloc_trim(0);
 }
 
 }  // namespace tinsmith::server

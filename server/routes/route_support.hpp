@@ -149,10 +149,4 @@ constexpr std::size_t bytes_to_encode(std::size_t mesh_bytes) {
 /// 507, or nothing where all sessions together are within their limit of memory.
 std::optional<Response> refusal_of_memory(Services& services, const Request& request);
 
-/// The allocator keeps what large meshes and their copies leave behind, for each thread its own, a
-/// gigabyte easily; it gives that back to the system only when told to.
-void give_back_memory();
-/// For less it does not pay.
-inline constexpr std::size_t kLargeMesh = std::size_t{8} << 20;
-
 }  // namespace tinsmith::server

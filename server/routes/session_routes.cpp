@@ -6,6 +6,7 @@
 #include "api/media_type.hpp"
 #include "api/responses.hpp"
 #include "api/terrain_options.hpp"
+#include "server/heap.hpp"
 #include "server/random_id.hpp"
 #include "server/reply.hpp"
 #include "server/routes/handlers.hpp"

@@ -62,6 +62,10 @@ double Victim::growth() const {
     return std::max(status_mebi("VmHWM"), status_mebi("VmRSS")) - held_;
 }
 
+double Victim::growth_that_stays() const {
+    return kIsMemoryOurs ? status_mebi("VmRSS") - held_ : 0;
+}
+
 std::string Victim::harm(double most_mebi) {
     if (port() == 0) return "it did not come up: " + server_->program().output();
     const double grown = growth();

@@ -36,6 +36,9 @@ class Victim {
     /// kernels that do not tell: 0.
     double growth() const;
 
+    /// MiB beyond what was held when it was last watched, now.
+    double growth_that_stays() const;
+
     /// What is not as it should be after an attack: the process, what it held, how long an honest
     /// client waits. Empty: all is well.
     std::string harm(double most_mebi = kMostMebiForRefused);

@@ -119,6 +119,57 @@ TEST_F(Hostile, Invitations) {
     EXPECT_EQ(connection.read().status, 200);
 }
 
+/// What the head tells is answered before the body comes, and instead of an invitation.
+TEST_F(Hostile, BodiesForNobody) {
+    const auto head = [](const std::string& line, const std::string& headers) {
+        return line + " HTTP/1.1\r\nHost: x\r\nContent-Length: 900000\r\n" + headers + "\r\n";
+    };
+    for (const std::string headers : {"", "Expect: 100-continue\r\n"}) {
+        expect_refused(head("POST /nope", headers), 404);
+        expect_refused(head("PUT /v1/sessions/a/polygons", headers), 405);
+        expect_refused(head("POST /v1/sessions?colour=red", headers), 400);
+    }
+    // One that has no body left on it may go on.
+    Connection connection(server->port());
+    connection.send(request_text("POST", "/nope"));
+    EXPECT_EQ(connection.read().status, 404);
+    connection.send(request_text("GET", "/healthz"));
+    EXPECT_EQ(connection.read().status, 200);
+}
+
+/// RFC 9110 14.2: a unit that is not known is no reason to refuse.
+TEST_F(Hostile, RangesOfOtherUnits) {
+    for (const std::string range : {"items=0-5", "items=0-1,2-3", "bytes 0-5", "x", ""}) {
+        Connection connection(server->port());
+        for (int i = 0; i < 2; ++i)
+            connection.send(get("Range: " + range + "\r\nX: y\r\nrange: " + range + "\r\n"));
+        EXPECT_EQ(connection.read().status, 200) << range;
+        EXPECT_EQ(connection.read().status, 200) << range;
+    }
+    expect_refused(get("Range: items=0-5\r\nRange: bytes=0-1,2-3\r\n"), 416);
+    Connection connection(server->port());
+    connection.send(get("Range: bytes=x\r\n"));
+    const Answer answer = connection.read();
+    EXPECT_EQ(answer.status, 416);
+    EXPECT_NE(answer.body.find("Ask for one range"), std::string::npos) << answer.body;
+}
+
+TEST_F(Hostile, LongLinesAreTold) {
+    const auto told = [](const std::string& bytes) {
+        Connection connection(server->port());
+        connection.send(bytes);
+        return connection.read();
+    };
+    const Answer query = told(request_text("GET", "/healthz?a=" + std::string(9000, 'a')));
+    EXPECT_EQ(query.status, 414);
+    EXPECT_NE(query.body.find("query, is longer than 8190 bytes"), std::string::npos) << query.body;
+    EXPECT_NE(query.body.find("\"instance\":\"/healthz\""), std::string::npos) << query.body;
+    const Answer header = told(get("X-Long: " + std::string(9000, 'a') + "\r\n"));
+    EXPECT_EQ(header.status, 431);
+    EXPECT_NE(header.body.find("X-Long is longer than 8190 bytes"), std::string::npos)
+        << header.body;
+}
+
 /// RFC 9110 10.1.1: HTTP/1.0 has no invitations.
 TEST_F(Hostile, InvitationsOfAnOlderTime) {
     for (const std::string version : {"1.1", "1.0"}) {
@@ -151,7 +202,7 @@ TEST_F(Hostile, Headers) {
     expect_refused(get("Range: bytes=0-1,2-3\r\n"), 416);
     expect_refused(get("REMOTE_ADDR: 10.0.0.1\r\n"), 400);
     expect_refused(get("Host: y\r\n"), 400);
-    expect_refused(get("X-Long: " + std::string(10'000, 'a') + "\r\n"), 400);
+    expect_refused(get("X-Long: " + std::string(10'000, 'a') + "\r\n"), 431);
     expect_refused(get("X-Long: " + std::string(100'000, 'a') + "\r\n"), 431);
 }
 

@@ -69,6 +69,23 @@ TEST(Router, FindsHandlersAndTheirArguments) {
     EXPECT_EQ(ask("GET", "/things/a%2Fb%20c/parts/x").body, "part:a/b c:x");
 }
 
+TEST(Router, RefusesByTheHeadWhatNoHandlerAnswers) {
+    const auto refusal = [](const std::string& method, const std::string& path,
+                            std::vector<NameValue> query = {}) {
+        Request head;
+        head.method = method;
+        head.path = path;
+        head.query = std::move(query);
+        const auto refused = router().refusal_of(head);
+        return refused ? refused->status : 0;
+    };
+    EXPECT_EQ(refusal("POST", "/things"), 0);
+    EXPECT_EQ(refusal("POST", "/nope"), 404);
+    EXPECT_EQ(refusal("PUT", "/things"), 405);
+    EXPECT_EQ(refusal("POST", "/things", {{"colour", "red"}}), 400);
+    EXPECT_EQ(refusal("POST", "/throws"), 405) << "and nobody asked the handler";
+}
+
 TEST(Router, AnswersHeadAsGet) {
     EXPECT_EQ(ask("HEAD", "/things/7").body, "one:7");
 }
