@@ -47,21 +47,43 @@ class Blocks {
                         GDALGetDataTypeSizeBits(GDALGetRasterDataType(band))));
     }
 
+    /// The first that the file has no data for.
+    std::optional<std::string> find_missing() const {
+        std::optional<std::string> missing;
+        for_each([&](std::string& name, int /*row*/) {
+            if (!item_of(band_, ("BLOCK_OFFSET_" + name).c_str(), "TIFF").empty()) return true;
+            missing = std::move(name);
+            return false;
+        });
+        return missing;
+    }
+
     /// The first that does not inflate to its size.
     std::optional<BadCoding> find_of_other_size(const std::function<bool()>& may_go_on) const {
+        std::optional<BadCoding> found;
+        for_each([&](std::string& name, int row) {
+            const bool is_stopped = !may_go_on();
+            if (!is_stopped && is_of_its_size(name, row)) return true;
+            found = BadCoding{{}, std::move(name), is_stopped};
+            return false;
+        });
+        return found;
+    }
+
+  private:
+    /// Calls visit("column_row", row) for all, row by row, until it gives false.
+    template <typename Visit>
+    void for_each(const Visit& visit) const {
         const int across = (GDALGetRasterBandXSize(band_) + block_width_ - 1) / block_width_;
         const int down = (rows_ + block_height_ - 1) / block_height_;
         for (int y = 0; y < down; ++y) {
             for (int x = 0; x < across; ++x) {
                 std::string name = std::to_string(x) + "_" + std::to_string(y);
-                if (!may_go_on()) return BadCoding{{}, std::move(name), true};
-                if (!is_of_its_size(name, y)) return BadCoding{{}, std::move(name)};
+                if (!visit(name, y)) return;
             }
         }
-        return std::nullopt;
     }
 
-  private:
     /// Where the file has no data for a block there is none to be wrong.
     bool is_of_its_size(const std::string& name, int row) const {
         const auto offset = number_of(item_of(band_, ("BLOCK_OFFSET_" + name).c_str(), "TIFF"));
@@ -92,6 +114,10 @@ class Blocks {
 };
 
 }  // namespace
+
+std::optional<std::string> find_missing_block(void* band) {
+    return Blocks({}, band).find_missing();
+}
 
 std::optional<BadCoding> find_bad_coding(std::string_view bytes, void* band,
                                          const std::function<bool()>& may_go_on) {

@@ -254,26 +254,13 @@ std::optional<Refused> Raster::read_elevation_unit(OGRSpatialReferenceH srs,
     return std::nullopt;
 }
 
-/// GDAL reads a block that is not in the file as no-data, or as zeros where no-data has no value:
-/// ground at sea level that nobody measured.
 std::optional<Refused> Raster::check_blocks() const {
     if (no_data_) return std::nullopt;
-    int block_width = 0;
-    int block_height = 0;
-    GDALGetBlockSize(band_, &block_width, &block_height);
-    const auto across = (GDALGetRasterXSize(dataset_) + block_width - 1) / block_width;
-    const auto down = (GDALGetRasterYSize(dataset_) + block_height - 1) / block_height;
-    for (int y = 0; y < down; ++y) {
-        for (int x = 0; x < across; ++x) {
-            const std::string block = std::to_string(x) + "_" + std::to_string(y);
-            const std::string item = "BLOCK_OFFSET_" + block;
-            if (GDALGetMetadataItem(band_, item.c_str(), "TIFF") != nullptr) continue;
-            return refused(FaultKind::Invalid, "TIFF_BLOCK_MISSING",
-                           "The file holds no data for block " + block +
-                               " (column, row) and names no no-data value.");
-        }
-    }
-    return std::nullopt;
+    const auto missing = find_missing_block(band_);
+    if (!missing) return std::nullopt;
+    return refused(FaultKind::Invalid, "TIFF_BLOCK_MISSING",
+                   "The file holds no data for block " + *missing +
+                       " (column, row) and names no no-data value.");
 }
 
 std::optional<Refused> Raster::check_coding() const {

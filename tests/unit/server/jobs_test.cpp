@@ -184,34 +184,6 @@ TEST_F(JobsTest, AreBoundedInNumber) {
     EXPECT_FALSE(jobs.view(running->id)) << "the first that ended goes first";
 }
 
-TEST_F(JobsTest, AreNotLostToOthersWhoKeepMore) {
-    Jobs jobs({.threads = 1, .kept = 10, .bytes = 100'000});
-    const auto ended_for = [&](const std::string& owner, std::size_t bytes) {
-        Request of_owner = request(std::string(bytes, 'x'));
-        of_owner.asker.id = owner;
-        const auto job = jobs.add(std::move(of_owner), answer);
-        EXPECT_TRUE(job);
-        wait(jobs, job->id);
-        return job->id;
-    };
-    const std::string small = ended_for("alice", 100);
-    std::string first, last;
-    for (int i = 0; i < 30; ++i) {
-        last = ended_for("bob", 100);
-        if (first.empty()) first = last;
-    }
-    EXPECT_TRUE(jobs.view(small)) << "there are too many of bob's";
-    EXPECT_FALSE(jobs.view(first));
-    EXPECT_TRUE(jobs.view(last));
-    for (int i = 0; i < 5; ++i)
-        last = ended_for("bob", 40'000);
-    EXPECT_TRUE(jobs.view(small)) << "bob's are too large";
-    EXPECT_TRUE(jobs.view(last));
-    const std::string large = ended_for("alice", 30'000);
-    EXPECT_TRUE(jobs.view(large));
-    EXPECT_TRUE(jobs.view(small)) << "bob still had most of the bytes";
-}
-
 TEST_F(JobsTest, AreBoundedInBytes) {
     Jobs jobs({.bytes = 10'000});
     EXPECT_FALSE(jobs.add(request(std::string(20'000, 'x')), answer));
