@@ -20,6 +20,7 @@
 #include "api/formats/gltf_writer.hpp"
 #include "api/formats/quantization.hpp"
 #include "api/parts.hpp"
+#include "api/unwritten.hpp"
 #include "core/predicates/orientation.hpp"
 
 namespace tinsmith::api {
@@ -86,7 +87,7 @@ std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const Gl
 }
 
 /// Where the vertices are in the file: float32 from the origin, in its axes, or on a grid.
-using Plainly = std::vector<std::array<float, 3>>;
+using Plainly = Unwritten<std::array<float, 3>>;
 using Placed = std::variant<Plainly, GridPositions, EncodeError>;
 
 Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options,
@@ -220,10 +221,11 @@ std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const Gl
                                             GltfContainer container) {
     static const core::Executor kAlone = core::one_after_another;
     const core::Executor& executor = mesh.triangles.size() < kWorthHelp ? kAlone : helpers;
-    if (std::optional<EncodeError> fault = find_fault(mesh, options, regions, executor))
+    const Box<double> in_units = bounds_of(mesh, executor);
+    if (std::optional<EncodeError> fault = find_fault(mesh, in_units, options, regions, executor))
         return *std::move(fault);
     GltfResult result;
-    const Box<double> bounds = bounds_in_metres(mesh, options.unit_to_metre, executor);
+    const Box<double> bounds = in_metres(in_units, options.unit_to_metre);
     Placed placed = options.compression == Compression::None
                         ? place_plainly(mesh, options, bounds, executor, result)
                         : place_on_grid(mesh, options, bounds, executor, result);

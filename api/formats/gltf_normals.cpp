@@ -4,13 +4,6 @@
 #include <vector>
 
 namespace tinsmith::api {
-namespace {
-
-NormalSum operator+(const NormalSum& u, const NormalSum& v) {
-    return {u.x + v.x, u.y + v.y, u.z + v.z};
-}
-
-}  // namespace
 
 std::vector<NormalSum> normal_sums(const core::MeshData& mesh) {
     std::vector<NormalSum> sums(mesh.vertices.size());
@@ -21,7 +14,9 @@ std::vector<NormalSum> normal_sums(const core::MeshData& mesh) {
         const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
         const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
         // The cross product's length is twice the area: the weight comes by itself.
-        const NormalSum normal{uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx};
+        const NormalSum normal{static_cast<float>(uy * vz - uz * vy),
+                               static_cast<float>(uz * vx - ux * vz),
+                               static_cast<float>(ux * vy - uy * vx), 0.0F};
         // Corners are distinct: all three are read before one is written, so that none waits.
         NormalSum& at_a = sums[corners[0]];
         NormalSum& at_b = sums[corners[1]];

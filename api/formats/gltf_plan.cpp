@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "api/unwritten.hpp"
+
 namespace tinsmith::api {
 namespace {
 
@@ -127,20 +129,26 @@ class ScenePlanner {
             0,
             static_cast<int>(std::bit_width(static_cast<std::uint64_t>(std::max(width, height)))) -
                 kStripBits);
-        std::vector<std::uint16_t> strips(triangles.size());
-        std::array<std::size_t, std::size_t{1} << kStripBits> counts{};
+        Unwritten<std::uint16_t> strips(triangles.size());
+        // Neighbours in the list lie in one strip mostly: in turns, so that none waits for the
+        // last.
+        std::array<std::array<std::uint32_t, 2>, std::size_t{1} << kStripBits> counts{};
         for (std::size_t i = 0; i < strips.size(); ++i) {
             const std::int64_t along = std::int64_t{corner(triangles[i])[axis]} - box.low[axis];
             strips[i] = static_cast<std::uint16_t>(along >> shift);
-            ++counts[strips[i]];
+            ++counts[strips[i]][i % 2];
         }
-        std::size_t line = 0, before = counts[0];
+        const auto count = [&](std::size_t strip) {
+            return std::size_t{counts[strip][0]} + counts[strip][1];
+        };
+        std::size_t line = 0, before = count(0);
         while (before < triangles.size() / 2)
-            before += counts[++line];
-        if (before == triangles.size()) before -= counts[line--];
+            before += count(++line);
+        if (before == triangles.size()) before -= count(line--);
         if (before == 0) return std::nullopt;
-        // Each is written to both places and counted in one: no branch that half of them take.
-        Items second(triangles.size());
+        // Each is written to both places and counted in one: no branch that half of them take. The
+        // last may be written beyond the second half.
+        Items second(triangles.size() - before + 1);
         std::size_t left = 0, right = 0;
         for (std::size_t i = 0; i < strips.size(); ++i) {
             const std::uint32_t t = triangles[i];

@@ -13,6 +13,7 @@
 #include "api/formats/gltf_pieces.hpp"
 #include "api/formats/gltf_plan.hpp"
 #include "api/parts.hpp"
+#include "api/unwritten.hpp"
 
 namespace tinsmith::api {
 namespace {
@@ -54,7 +55,7 @@ GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
 }
 
 /// All triangles, in the mesh's own order.
-GlbPrimitive whole_primitive(const SceneInput& input, std::vector<std::array<float, 3>> positions,
+GlbPrimitive whole_primitive(const SceneInput& input, Unwritten<std::array<float, 3>> positions,
                              const core::Executor& executor) {
     GlbPrimitive primitive = primitive_of(GlbMode::Triangles, nullptr);
     primitive.positions = std::move(positions);
@@ -164,8 +165,8 @@ class PrimitiveMaker {
     Made compressed(const PlannedPiece& planned) {
         const Piece<3> piece = cutters_.cut<3>(input_.mesh.triangles, planned.items);
         Made made{shift_for(piece.vertices), {}, {}};
-        std::vector<GridPoint> positions(piece.vertices.size());
-        std::vector<std::array<float, 3>> normals(input_.normals.empty() ? 0 : positions.size());
+        Unwritten<GridPoint> positions(piece.vertices.size());
+        Unwritten<std::array<float, 3>> normals(input_.normals.empty() ? 0 : positions.size());
         Box<std::int32_t> box;
         for (std::size_t i = 0; i < positions.size(); ++i) {
             positions[i] = to_axes(local(piece.vertices[i], made.shift), input_.options.up);
@@ -256,7 +257,7 @@ std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& inp
 }
 
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
-                   std::vector<std::array<float, 3>> positions, const core::Executor& executor) {
+                   Unwritten<std::array<float, 3>> positions, const core::Executor& executor) {
     const auto position_of = [&](std::uint32_t vertex) { return positions[vertex]; };
     GlbNode node{"terrain", to_axes(origin, input.options.up), {}};
     PieceCutter cutter(positions.size());

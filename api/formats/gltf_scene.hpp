@@ -12,6 +12,7 @@
 #include "api/formats/gltf_normals.hpp"
 #include "api/formats/gltf_writer.hpp"
 #include "api/formats/quantization.hpp"
+#include "api/unwritten.hpp"
 #include "core/types/executor.hpp"
 #include "core/types/mesh_data.hpp"
 
@@ -49,6 +50,6 @@ std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& inp
 /// One node with the mesh in its own order, or group by group, `positions` in the file's axes from
 /// `origin`, which is in session axes; and constraint lines.
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
-                   std::vector<std::array<float, 3>> positions, const core::Executor& executor);
+                   Unwritten<std::array<float, 3>> positions, const core::Executor& executor);
 
 }  // namespace tinsmith::api

@@ -14,6 +14,7 @@
 #include "api/formats/draco_encoder.hpp"
 #include "api/formats/gltf_features.hpp"
 #include "api/formats/meshopt_encoder.hpp"
+#include "api/unwritten.hpp"
 
 namespace tinsmith::api {
 
@@ -27,8 +28,8 @@ struct GlbPrimitive {
     std::array<double, 3> high{};
     std::optional<DracoBytes> draco;
     std::optional<MeshoptBytes> meshopt;
-    std::vector<std::array<float, 3>> positions;
-    std::vector<std::array<float, 3>> normals;  ///< empty: none
+    Unwritten<std::array<float, 3>> positions;
+    Unwritten<std::array<float, 3>> normals;  ///< empty: none
     std::vector<std::uint32_t> indices;
     /// In place of the indices: someone else's, there for as long as the scene is.
     std::span<const std::uint32_t> shared_indices;

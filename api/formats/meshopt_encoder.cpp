@@ -23,6 +23,13 @@ void choose_codecs() {
     static_cast<void>(kOnce);
 }
 
+/// The nearest whole number, a tie to the even one: a float of this size has no room for a
+/// fraction. Requires: |value| < 2^22.
+std::int32_t to_whole(float value) {
+    constexpr float kWhole = 0x1.8p23F;
+    return static_cast<std::int32_t>((value + kWhole) - kWhole);
+}
+
 /// n * 2^exponent as the filter takes it: the exponent in the upper 8 bits, n in the lower 24.
 std::uint32_t exponential(std::int32_t n, int exponent) {
     return static_cast<std::uint32_t>(exponent) << 24 | (static_cast<std::uint32_t>(n) & 0xFFFFFF);
@@ -71,8 +78,7 @@ MeshoptView encode_normals(const MeshoptPiece& piece, std::span<const std::uint3
     for (std::size_t i = 0; i < order.size(); ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const float scaled = piece.normals[order[i]][axis] * kNormalSteps;
-            elements[i][axis] =
-                exponential(static_cast<std::int32_t>(std::lrint(scaled)), kNormalExponent);
+            elements[i][axis] = exponential(to_whole(scaled), kNormalExponent);
         }
     }
     MeshoptView view = encode_elements(elements);

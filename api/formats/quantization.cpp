@@ -96,14 +96,18 @@ std::vector<std::array<std::uint32_t, 3>> faulty(
     return found;
 }
 
-/// The box of coordinates as they are; six numbers that no memory holds while they grow.
+/// Seven numbers that no memory holds while they grow. Comparisons pass over what is not a number;
+/// what is not finite less itself is none, and so is the sum.
 Box<double> box_of(std::span<const core::Point3> vertices) {
     core::Point3 low{vertices[0]}, high{vertices[0]};
+    double zero = 0.0;
     for (const core::Point3& v : vertices) {
         low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
         high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+        zero += (v.x - v.x) + (v.y - v.y) + (v.z - v.z);
     }
-    return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
+    return {{low.x + zero, low.y + zero, low.z + zero},
+            {high.x + zero, high.y + zero, high.z + zero}};
 }
 
 }  // namespace
@@ -116,8 +120,7 @@ std::int32_t PositionGrid::period() const {
     return exponent >= 0 ? 1 : std::int32_t{1} << -exponent;
 }
 
-Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre,
-                             const core::Executor& executor) {
+Box<double> bounds_of(const core::MeshData& mesh, const core::Executor& executor) {
     Box<double> bounds;
     if (mesh.vertices.empty()) return bounds;
     std::array<Box<double>, kMostParts> boxes;
@@ -125,8 +128,14 @@ Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre,
         boxes[part.number] =
             box_of(std::span(mesh.vertices).subspan(part.begin, part.end - part.begin));
     });
-    for (const Box<double>& box : boxes)
+    for (const Box<double>& box : boxes) {
+        if (!(box.low[0] == box.low[0])) return box;
         bounds.add(box);
+    }
+    return bounds;
+}
+
+Box<double> in_metres(Box<double> bounds, double unit_to_metre) {
     // Rounding keeps the order: the least coordinate is the least in metres as well.
     for (std::size_t axis = 0; axis < 3; ++axis) {
         bounds.low[axis] *= unit_to_metre;
@@ -207,7 +216,7 @@ GridPositions best_positions(const core::MeshData& mesh, double unit_to_metre,
     GridPositions best = at(coarsest);
     if (best.check.faults() == 0) return best;
     const double half =
-        widest_half(bounds_in_metres(mesh, unit_to_metre, executor), coarsest.origin);
+        widest_half(in_metres(bounds_of(mesh, executor), unit_to_metre), coarsest.origin);
     const auto suspects = faulty(best.vertices.points, mesh.triangles);
     PositionGrid finer = coarsest;
     // Ends: each step doubles the number of steps across the mesh, which `span` bounds, or the

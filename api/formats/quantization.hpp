@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "api/unwritten.hpp"
 #include "core/types/executor.hpp"
 #include "core/types/mesh_data.hpp"
 
@@ -91,9 +92,13 @@ struct PlanCheck {
     }
 };
 
-/// The box of all vertices in metres. Cost: one pass.
-Box<double> bounds_in_metres(const core::MeshData& mesh, double unit_to_metre,
-                             const core::Executor& executor = core::one_after_another);
+/// The box of all vertices in the session's unit; NaN where a coordinate is not finite. Cost: one
+/// pass.
+Box<double> bounds_of(const core::MeshData& mesh,
+                      const core::Executor& executor = core::one_after_another);
+
+/// A box of the session in metres. Requires: the unit is positive.
+Box<double> in_metres(Box<double> bounds, double unit_to_metre);
 
 /// The whole-metre position nearest to the middle of the box.
 std::array<double, 3> whole_metre_middle(const Box<double>& bounds);
@@ -110,7 +115,7 @@ double finest_tolerance(const Box<double>& bounds);
 
 /// Vertices on a grid.
 struct GridVertices {
-    std::vector<GridPoint> points;  ///< axes of the session
+    Unwritten<GridPoint> points;  ///< axes of the session
     /// The largest distance on each axis, in metres, between a vertex and what a client computes
     /// for it: grid origin + step * n, in double.
     std::array<double, 3> axis_error{};

@@ -62,7 +62,7 @@ std::size_t encode_vectors(const std::vector<std::array<std::uint32_t, 3>>& vect
 
 ReadyBuffers::ReadyBuffers(const core::MeshData& mesh) {
     const api::GltfOptions options;
-    const auto coarsest = api::grid_for(api::bounds_in_metres(mesh, 1.0), options.tolerance);
+    const auto coarsest = api::grid_for(api::bounds_of(mesh), options.tolerance);
     if (!coarsest) throw std::runtime_error("the mesh is too wide");
     const auto made = api::best_positions(mesh, 1.0, *coarsest, api::kDracoSteps);
     exponent = made.grid.exponent;

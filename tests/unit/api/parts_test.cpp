@@ -56,7 +56,7 @@ TEST(InParts, GiveWhatOnePassGives) {
     mesh.vertices.back().y = 20.375;
     for (std::uint32_t i = 0; i + 2 < count; ++i)
         mesh.triangles.push_back({i, i + 1, i + 2});
-    const Box<double> bounds = bounds_in_metres(mesh, 2.0, side_by_side);
+    const Box<double> bounds = in_metres(bounds_of(mesh, side_by_side), 2.0);
     EXPECT_EQ(bounds.low, (std::array<double, 3>{0.5, 0.0, 0.0}));
     EXPECT_EQ(bounds.high[0], 2.0 * (static_cast<double>(count - 1) + 0.25));
     EXPECT_EQ(bounds.high[1], 40.75);

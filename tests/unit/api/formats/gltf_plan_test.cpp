@@ -20,7 +20,7 @@ core::MeshData large() {
 }
 
 ScenePlan planned(const core::MeshData& mesh, const GltfOptions& options) {
-    const auto grid = grid_for(bounds_in_metres(mesh, 1.0), options.tolerance);
+    const auto grid = grid_for(in_metres(bounds_of(mesh), 1.0), options.tolerance);
     const auto points = quantize(mesh, 1.0, *grid).points;
     const SceneInput input{mesh, options, {}, {}};
     auto plan = plan_scene(input, *grid, points);

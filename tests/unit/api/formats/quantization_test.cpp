@@ -50,7 +50,7 @@ TEST(Quantize, KeepsTheToleranceOnEveryAxis) {
     }
     for (const double unit : {1.0, 1200.0 / 3937.0}) {
         for (const double tolerance : {5.0, 0.005, 1e-4}) {
-            const auto grid = grid_for(bounds_in_metres(mesh, unit), tolerance);
+            const auto grid = grid_for(in_metres(bounds_of(mesh), unit), tolerance);
             ASSERT_TRUE(grid);
             for (const double error : quantize(mesh, unit, *grid).axis_error) {
                 EXPECT_LE(error, grid->step() / 2 * (1 + 1e-6));
