@@ -72,13 +72,14 @@ inline Pair plan_of(const Tin::Vertex& v) {
     return Pair{v.x, v.y};
 }
 
-/// How far off a glance may be.
-constexpr double kMargin = 1.01;
-/// Rounding is below 2^-50 of the squared edges: below a thousandth of the area where the squared
-/// sine of the smallest angle is as large as this.
-constexpr double kLeast = 0x1p-78;
+/// How far off a glance may be, as a factor. Where the terrain is a grid or a plane, many triangles
+/// are as blunt, or as steep, as what they are held against: all of these are looked at.
+constexpr double kMargin = 1.0 + 0x1p-18;
+/// Rounding moves areas by less than 2^-49 of the product of two edges: squares of areas by less
+/// than a part in 2^20 where the squared sine of the smallest angle is as large as this.
+constexpr double kLeast = 0x1p-56;
 
-/// What a triangle is like, at a glance: right to a hundredth, which is enough to pass over most.
+/// What a triangle is like, at a glance: right to the margin, which is enough to pass over most.
 class Glance {
   public:
     Glance(const Tin::Vertex& a, const Tin::Vertex& b, const Tin::Vertex& c) {
@@ -90,24 +91,27 @@ class Glance {
         const double upright = cross[0] - cross[1];
         level_squared_ = sum_of(level * level);
         upright_squared_ = upright * upright;
-        // Half the sum of the three squared edges: no less than the mean of the two longest.
-        const double half = sum_of(u * u + v * v - u * v) + (uz * uz + vz * vz - uz * vz);
-        longest_squared_ = half * half;
+        const double uu = sum_of(u * u) + uz * uz, vv = sum_of(v * v) + vz * vz;
+        const double ww = (uu + vv) - 2.0 * (sum_of(u * v) + uz * vz);
+        // Of two and the larger of them the third: of three products the largest.
+        longest_squared_ = std::max(uu * vv, std::max(uu, vv) * ww);
     }
 
     /// Never true where `TriangleShape::has_angle_below` is.
     bool is_blunter_than(double bound) const {
-        return upright_squared_ > kMargin * std::max(bound, kLeast) * longest_squared_;
+        return level_squared_ + upright_squared_ >
+               kMargin * std::max(bound, kLeast) * longest_squared_;
     }
-    /// Never true where `TriangleShape::is_steeper_than` is. Requires: not a needle, see above.
+    /// Never true where `TriangleShape::is_steeper_than` is. Always false for needles in plan.
     bool is_flatter_than(double squared_slope) const {
-        return kMargin * level_squared_ <= squared_slope * upright_squared_;
+        return std::max(kMargin * level_squared_, squared_slope * kLeast * longest_squared_) <=
+               squared_slope * upright_squared_;
     }
 
   private:
     double level_squared_;    ///< of the normal that is as long as twice the area
     double upright_squared_;  ///< of its vertical part
-    double longest_squared_;  ///< no less than the product of the two longest edges, squared
+    double longest_squared_;  ///< product of the two longest edges, squared
 };
 
 /// The same in plan alone. On a plane of slope s all lengths are at most sqrt(1 + s^2) times what
@@ -121,6 +125,7 @@ class PlanGlance {
         const Pair cross = u * Pair{v[1], v[0]};
         const double area = cross[0] - cross[1];
         area_squared_ = area * area;
+        // Half the sum of the three squared edges: no less than the mean of the two longest.
         const double half = sum_of(u * u + v * v - u * v);
         longest_squared_ = half * half;
     }
@@ -131,7 +136,7 @@ class PlanGlance {
 
   private:
     double area_squared_;
-    double longest_squared_;
+    double longest_squared_;  ///< no less than the product of the two longest edges, squared
 };
 
 /// Whether only a neighbour's link changed. One comparison, for nobody can foresee each of four.
