@@ -20,7 +20,6 @@
 #include "api/formats/gltf_writer.hpp"
 #include "api/formats/quantization.hpp"
 #include "api/parts.hpp"
-#include "api/unwritten.hpp"
 #include "core/predicates/orientation.hpp"
 
 namespace tinsmith::api {
@@ -86,9 +85,8 @@ std::optional<EncodeError> count_primitives(const core::MeshData& mesh, const Gl
     return std::nullopt;
 }
 
-/// Where the vertices are in the file: float32 from the origin, in its axes, or on a grid.
-using Plainly = Unwritten<std::array<float, 3>>;
-using Placed = std::variant<Plainly, GridPositions, EncodeError>;
+/// Where the vertices are in the file.
+using Placed = std::variant<PlainPositions, GridPositions, EncodeError>;
 
 Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options,
                      const Box<double>& bounds, const core::Executor& executor,
@@ -109,14 +107,27 @@ Placed place_on_grid(const core::MeshData& mesh, const GltfOptions& options,
     return placed;
 }
 
+/// The box of positions, each rounded to float32 from the origin: rounding keeps the order.
+Box<float> rounded_box(const Box<double>& bounds, const std::array<double, 3>& origin, UpAxis up) {
+    std::array<float, 3> low{}, high{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = static_cast<float>(bounds.low[axis] - origin[axis]);
+        high[axis] = static_cast<float>(bounds.high[axis] - origin[axis]);
+    }
+    Box<float> box;
+    box.add(to_axes(low, up));
+    box.add(to_axes(high, up));
+    return box;
+}
+
 Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options,
                      const Box<double>& bounds, const core::Executor& executor,
                      GltfResult& result) {
     const double unit = options.unit_to_metre;
     const std::array<double, 3> origin = whole_metre_middle(bounds);
     std::array<std::array<double, 3>, kMostParts> errors{};
-    Plainly positions(mesh.vertices.size());
-    in_parts(executor, positions.size(), [&](Part part) {
+    PlainPositions positions{Unwritten<std::array<float, 3>>(mesh.vertices.size()), {}};
+    in_parts(executor, mesh.vertices.size(), [&](Part part) {
         std::array<double, 3> largest{};
         for (std::size_t i = part.begin; i < part.end; ++i) {
             const core::Point3& vertex = mesh.vertices[i];
@@ -127,7 +138,7 @@ Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options,
                 const double error = origin[axis] + double{rounded[axis]} - metres[axis];
                 largest[axis] = std::max(largest[axis], std::fabs(error));
             }
-            positions[i] = to_axes(rounded, options.up);
+            positions.vertices[i] = to_axes(rounded, options.up);
         }
         errors[part.number] = largest;
     });
@@ -136,10 +147,11 @@ Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options,
             result.axis_error[axis] = std::max(result.axis_error[axis], error[axis]);
     }
     result.origin = origin;
+    positions.box = rounded_box(bounds, origin, options.up);
     return positions;
 }
 
-PlanCheck check_plainly(const Plainly& positions,
+PlanCheck check_plainly(std::span<const std::array<float, 3>> positions,
                         std::span<const std::array<std::uint32_t, 3>> triangles, UpAxis up) {
     const auto plan = [&, north = up == UpAxis::Z ? 1U : 2U,
                        sign = up == UpAxis::Z ? 1.0 : -1.0](std::uint32_t vertex) {
@@ -187,7 +199,8 @@ Nodes nodes_on_grid(const Work& work, const GridPositions& placed) {
                       placed.grid, points, work.executor);
 }
 
-std::vector<GlbNode> nodes_placed_plainly(const Work& work, Plainly positions, GltfResult& result) {
+std::vector<GlbNode> nodes_placed_plainly(const Work& work, PlainPositions positions,
+                                          GltfResult& result) {
     std::vector<NormalSum> normals;
     std::array<PlanCheck, kMostParts> checks;
     const std::span<const std::array<std::uint32_t, 3>> triangles = work.mesh.triangles;
@@ -195,7 +208,8 @@ std::vector<GlbNode> nodes_placed_plainly(const Work& work, Plainly positions, G
         work.executor, triangles.size(),
         [&](Part part) {
             checks[part.number] = check_plainly(
-                positions, triangles.subspan(part.begin, part.end - part.begin), work.options.up);
+                positions.vertices, triangles.subspan(part.begin, part.end - part.begin),
+                work.options.up);
         },
         jobs_for_normals(work, normals));
     for (const PlanCheck& check : checks) {
@@ -212,7 +226,7 @@ Nodes nodes_of(const Work& work, Placed placed, GltfResult& result) {
     if (auto* error = std::get_if<EncodeError>(&placed)) return std::move(*error);
     if (const auto* on_grid = std::get_if<GridPositions>(&placed))
         return nodes_on_grid(work, *on_grid);
-    return nodes_placed_plainly(work, std::get<Plainly>(std::move(placed)), result);
+    return nodes_placed_plainly(work, std::get<PlainPositions>(std::move(placed)), result);
 }
 
 std::variant<GltfResult, EncodeError> write(const core::MeshData& mesh, const GltfOptions& options,

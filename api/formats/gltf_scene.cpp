@@ -55,24 +55,16 @@ GlbPrimitive plain_primitive(const SceneInput& input, const SceneGroup* group,
 }
 
 /// All triangles, in the mesh's own order.
-GlbPrimitive whole_primitive(const SceneInput& input, Unwritten<std::array<float, 3>> positions,
+GlbPrimitive whole_primitive(const SceneInput& input, PlainPositions positions,
                              const core::Executor& executor) {
     GlbPrimitive primitive = primitive_of(GlbMode::Triangles, nullptr);
-    primitive.positions = std::move(positions);
+    primitive.positions = std::move(positions.vertices);
+    set_box(primitive, positions.box);
     primitive.normals.resize(input.normals.size());
-    std::array<Box<float>, kMostParts> boxes;
-    in_parts(executor, primitive.positions.size(), [&](Part part) {
-        Box<float> box;
+    in_parts(executor, primitive.normals.size(), [&](Part part) {
         for (std::size_t i = part.begin; i < part.end; ++i)
-            box.add(primitive.positions[i]);
-        boxes[part.number] = box;
-        for (std::size_t i = part.begin; i < part.end && !input.normals.empty(); ++i)
             primitive.normals[i] = smooth_normal(input.normals[i], input.options.up);
     });
-    Box<float> box;
-    for (const Box<float>& of_part : boxes)
-        box.add(of_part);
-    set_box(primitive, box);
     static_assert(sizeof(input.mesh.triangles[0]) == 3 * sizeof(std::uint32_t));
     primitive.shared_indices = {input.mesh.triangles[0].data(), input.mesh.triangles.size() * 3};
     return primitive;
@@ -257,10 +249,10 @@ std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& inp
 }
 
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
-                   Unwritten<std::array<float, 3>> positions, const core::Executor& executor) {
-    const auto position_of = [&](std::uint32_t vertex) { return positions[vertex]; };
+                   PlainPositions positions, const core::Executor& executor) {
+    const auto position_of = [&](std::uint32_t vertex) { return positions.vertices[vertex]; };
     GlbNode node{"terrain", to_axes(origin, input.options.up), {}};
-    PieceCutter cutter(positions.size());
+    PieceCutter cutter(positions.vertices.size());
     for (const SceneGroup& group : input.groups) {
         const Piece<3> piece = cutter.cut<3>(input.mesh.triangles, group.triangles);
         node.primitives.push_back(plain_primitive(input, &group, piece, position_of));

@@ -47,9 +47,15 @@ std::variant<std::vector<GlbNode>, EncodeError> grid_nodes(const SceneInput& inp
                                                            std::span<const GridPoint> points,
                                                            const core::Executor& executor);
 
-/// One node with the mesh in its own order, or group by group, `positions` in the file's axes from
-/// `origin`, which is in session axes; and constraint lines.
+/// Where all vertices are, in the file's axes.
+struct PlainPositions {
+    Unwritten<std::array<float, 3>> vertices;
+    Box<float> box;
+};
+
+/// One node with the mesh in its own order, or group by group, `positions` from `origin`, which is
+/// in session axes; and constraint lines.
 GlbNode plain_node(const SceneInput& input, const std::array<double, 3>& origin,
-                   Unwritten<std::array<float, 3>> positions, const core::Executor& executor);
+                   PlainPositions positions, const core::Executor& executor);
 
 }  // namespace tinsmith::api
