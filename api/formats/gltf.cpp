@@ -153,13 +153,22 @@ Placed place_plainly(const core::MeshData& mesh, const GltfOptions& options,
 
 PlanCheck check_plainly(std::span<const std::array<float, 3>> positions,
                         std::span<const std::array<std::uint32_t, 3>> triangles, UpAxis up) {
-    const auto plan = [&, north = up == UpAxis::Z ? 1U : 2U,
-                       sign = up == UpAxis::Z ? 1.0 : -1.0](std::uint32_t vertex) {
+    const std::size_t north = up == UpAxis::Z ? 1 : 2;
+    const float sign = up == UpAxis::Z ? 1.0F : -1.0F;
+    // float32 can tell most: each of its seven roundings is by 2^-24 of what is rounded, or by less
+    // than the smallest normal number.
+    const auto is_plainly_left = [&](const auto& a, const auto& b, const auto& c) {
+        const float left = (b[0] - a[0]) * (c[north] - a[north]);
+        const float right = (b[north] - a[north]) * (c[0] - a[0]);
+        return sign * (left - right) > 0x1p-20F * (std::fabs(left) + std::fabs(right)) + 0x1p-120F;
+    };
+    const auto plan = [&](std::uint32_t vertex) {
         const std::array<float, 3>& position = positions[vertex];
-        return core::Point2{double{position[0]}, sign * double{position[north]}};
+        return core::Point2{double{position[0]}, double{sign * position[north]}};
     };
     PlanCheck check;
     for (const auto& [a, b, c] : triangles) {
+        if (is_plainly_left(positions[a], positions[b], positions[c])) continue;
         const core::Orientation side = core::orientation(plan(a), plan(b), plan(c));
         if (side == core::Orientation::Clockwise) ++check.flipped;
         if (side == core::Orientation::Collinear) ++check.collapsed;

@@ -17,6 +17,15 @@
 
 namespace tinsmith::api::testing {
 
+inline GltfResult written(const core::MeshData& mesh, const GltfOptions& options) {
+    auto result = write_glb(mesh, options);
+    if (const auto* error = std::get_if<EncodeError>(&result)) {
+        ADD_FAILURE() << error->detail;
+        return {};
+    }
+    return std::get<GltfResult>(std::move(result));
+}
+
 /// Hills over columns x rows cells, posts off the lattice, so that nothing is round by chance.
 inline core::MeshData hills(std::uint32_t columns, std::uint32_t rows, double cell,
                             core::Point3 corner = {702113.37, 4029551.81, 411.3}) {

@@ -21,15 +21,7 @@ using testing::expect_same_mesh;
 using testing::hills;
 using testing::NearestVertex;
 using testing::placed;
-
-GltfResult written(const core::MeshData& mesh, const GltfOptions& options) {
-    auto result = write_glb(mesh, options);
-    if (const auto* error = std::get_if<EncodeError>(&result)) {
-        ADD_FAILURE() << error->detail;
-        return {};
-    }
-    return std::get<GltfResult>(std::move(result));
-}
+using testing::written;
 
 EncodeError refused(const core::MeshData& mesh, const GltfOptions& options) {
     const auto result = write_glb(mesh, options);
@@ -199,66 +191,6 @@ TEST(WriteGlb, HugeTrianglesGoUncompressedOnTheSameGrid) {
     alone.vertices[1] = alone.vertices[0];
     const DecodedGlb plain = testing::decode_glb(written(alone, options).bytes);
     EXPECT_FALSE(plain.json.contains("extensionsRequired"));
-}
-
-TEST(WriteGlb, CountsWhatRoundingTurnsOver) {
-    core::MeshData mesh;
-    // On a grid of 1 m: the first stays; the second's apex, just above its base, rounds to 0 while
-    // the base goes down from 1 to 0; the third rounds onto one line. The fourth is so large that
-    // no finer grid is to be had.
-    mesh.vertices = {{0, 20, 0},    {10, 20, 0},   {0, 30, 0},    {0, 0.6, 0},
-                     {10, 0.4, 0},  {6, 0.49, 0},  {20, 10.1, 0}, {30, 10.2, 0},
-                     {25, 10.3, 0}, {-4e6, 50, 0}, {4e6, 50, 0},  {0, 60, 0}};
-    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 11}};
-    GltfOptions options;
-    options.tolerance = 0.6;
-    const GltfResult coarse = written(mesh, options);
-    EXPECT_EQ(coarse.step, 1.0);
-    EXPECT_EQ(coarse.flipped, 1u);
-    EXPECT_EQ(coarse.collapsed, 1u);
-    const DecodedGlb glb = testing::decode_glb(coarse.bytes);
-    const auto& extras = glb.json.at("scenes").at(0).at("extras");
-    EXPECT_EQ(extras.at("collapsed"), coarse.collapsed);
-    EXPECT_EQ(extras.at("flipped"), coarse.flipped);
-    EXPECT_EQ(extras.at("max_error").get<double>(), coarse.max_error);
-    EXPECT_EQ(extras.at("step").get<double>(), 1.0);
-    EXPECT_EQ(extras.at("origin"), nlohmann::json(coarse.origin));
-    EXPECT_EQ(extras.at("triangles"), mesh.triangles.size());
-}
-
-TEST(WriteGlb, TakesAFinerGridWhereThatKeepsTriangles) {
-    core::MeshData mesh;
-    mesh.vertices = {{0, 20, 0},   {10, 20, 0},   {0, 30, 0},    {0, 0.6, 0},  {10, 0.4, 0},
-                     {6, 0.49, 0}, {20, 10.1, 0}, {30, 10.2, 0}, {25, 10.3, 0}};
-    mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
-    for (const Compression compression : {Compression::Draco, Compression::Meshopt}) {
-        GltfOptions options;
-        options.compression = compression;
-        options.tolerance = 0.6;
-        const GltfResult result = written(mesh, options);
-        EXPECT_EQ(result.flipped + result.collapsed, 0u);
-        EXPECT_LT(result.step, 1.0);
-        EXPECT_GE(result.step, 0x1p-4) << "no finer than need be";
-        // One that no grid can help costs nothing.
-        core::MeshData needle = mesh;
-        needle.vertices.push_back({5 + 1e-12, 20, 0});
-        needle.triangles.push_back({0, 1, 9});
-        const GltfResult hopeless = written(needle, options);
-        EXPECT_EQ(hopeless.collapsed, 1u);
-        EXPECT_EQ(hopeless.step, result.step);
-    }
-}
-
-TEST(WriteGlb, PlainFlipsAreThoseOfTheFloats) {
-    // Near 60 km a float32 step is 2^-8 m: the sliver's apex falls onto its base.
-    core::MeshData mesh;
-    mesh.vertices = {{-60000, -60000, 0},     {60000, -60000, 0},    {60000, 60000, 0},
-                     {0, 0.0004, 0},          {59000.5, 59000.5, 0}, {59001.5, 59001.5, 0},
-                     {59001.0, 59001.0005, 0}};
-    mesh.triangles = {{0, 1, 2}, {4, 5, 6}, {0, 2, 3}};
-    const GltfResult result = written(mesh, {.compression = Compression::None});
-    EXPECT_EQ(result.collapsed, 1u);
-    EXPECT_EQ(result.flipped, 0u);
 }
 
 TEST(WriteGlb, LeavesOutWhatIsNotAskedFor) {
