@@ -213,6 +213,7 @@ Json problem_types() {
             {"oneOf", std::move(all)}};
 }
 
+// NOLINTNEXTLINE(misc-no-recursion): as deep as the document of this program
 void erase_everywhere(Json& value, const char* name) {
     if (value.is_object()) value.erase(name);
     if (!value.is_structured()) return;
@@ -237,8 +238,8 @@ std::string make_document() {
 }  // namespace
 
 const std::string& openapi_document() {
-    static const std::string document = make_document();
-    return document;
+    static const std::string kDocument = make_document();
+    return kDocument;
 }
 
 }  // namespace tinsmith::api

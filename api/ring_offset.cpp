@@ -119,6 +119,7 @@ class Geos {
     std::vector<const GEOSGeometry*> parts_of(const GEOSGeometry* geometry) const {
         std::vector<const GEOSGeometry*> parts;
         const int count = GEOSGetNumGeometries_r(handle_, geometry);
+        parts.reserve(static_cast<std::size_t>(std::max(count, 0)));
         for (int i = 0; i < count; ++i)
             parts.push_back(GEOSGetGeometryN_r(handle_, geometry, i));
         return parts;

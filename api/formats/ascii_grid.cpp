@@ -22,7 +22,7 @@ namespace tinsmith::api {
 
 namespace {
 
-enum Word { kColumns, kRows, kLeft, kLeftCentre, kLow, kLowCentre, kCell, kDx, kDy, kNoData };
+enum Word { Columns, Rows, Left, LeftCentre, Low, LowCentre, Cell, Dx, Dy, NoData };
 constexpr std::array<std::string_view, 10> kWords{
     "ncols",     "nrows",    "xllcorner", "xllcenter", "yllcorner",
     "yllcenter", "cellsize", "dx",        "dy",        "nodata_value"};
@@ -157,25 +157,25 @@ void GridText::check_header() {
     const auto missing = [&](const std::string& what) {
         fault(FaultKind::Invalid, "GRID_HEADER", "The header has no " + what + ".");
     };
-    if (!has(kColumns)) missing("ncols");
-    if (!has(kRows)) missing("nrows");
-    if (has(kLeft) == has(kLeftCentre)) missing("xllcorner or xllcenter, or it has both");
-    if (has(kLow) == has(kLowCentre)) missing("yllcorner or yllcenter, or it has both");
-    if (has(kCell) ? has(kDx) || has(kDy) : !has(kDx) || !has(kDy))
+    if (!has(Columns)) missing("ncols");
+    if (!has(Rows)) missing("nrows");
+    if (has(Left) == has(LeftCentre)) missing("xllcorner or xllcenter, or it has both");
+    if (has(Low) == has(LowCentre)) missing("yllcorner or yllcenter, or it has both");
+    if (has(Cell) ? has(Dx) || has(Dy) : !has(Dx) || !has(Dy))
         missing("cellsize, nor dx and dy, or it has both");
-    for (const Word count : {kColumns, kRows}) {
+    for (const Word count : {Columns, Rows}) {
         if (!has(count)) continue;
         const double n = value(count);
         if (n >= 1.0 && n <= 4e9 && n == std::floor(n)) continue;
         fault(FaultKind::Invalid, "GRID_HEADER",
               std::string(kWords[count]) + " is a whole number from 1 on.");
     }
-    for (const Word size : {kCell, kDx, kDy}) {
+    for (const Word size : {Cell, Dx, Dy}) {
         if (!has(size) || (value(size) > 0.0 && value(size) <= kMaxCoordinate)) continue;
         fault(FaultKind::Invalid, "GRID_HEADER",
               std::string(kWords[size]) + " is a length above 0, and below 1e9.");
     }
-    for (const Word place : {kLeft, kLeftCentre, kLow, kLowCentre}) {
+    for (const Word place : {Left, LeftCentre, Low, LowCentre}) {
         if (!has(place) || std::fabs(value(place)) <= kMaxCoordinate) continue;
         fault(FaultKind::Invalid, "COORDINATE_OUT_OF_RANGE",
               std::string(kWords[place]) + " is beyond 1e9.");
@@ -184,8 +184,8 @@ void GridText::check_header() {
 
 /// Before memory is taken: against the limit, and against the bytes that there are.
 void GridText::check_size() {
-    grid_.columns = static_cast<std::size_t>(value(kColumns));
-    grid_.rows = static_cast<std::size_t>(value(kRows));
+    grid_.columns = static_cast<std::size_t>(value(Columns));
+    grid_.rows = static_cast<std::size_t>(value(Rows));
     const std::string size =
         std::to_string(grid_.columns) + " by " + std::to_string(grid_.rows) + " posts";
     if (grid_.columns > limits_.max_vertices / grid_.rows) {
@@ -198,11 +198,11 @@ void GridText::check_size() {
                      "The header promises " + size + ", and only " +
                          std::to_string(tokens_.left()) + " bytes follow: the file is cut off.");
     }
-    grid_.dx = has(kCell) ? value(kCell) : value(kDx);
-    const double down = has(kCell) ? value(kCell) : value(kDy);
+    grid_.dx = has(Cell) ? value(Cell) : value(Dx);
+    const double down = has(Cell) ? value(Cell) : value(Dy);
     grid_.dy = -down;
-    const double low = has(kLow) ? value(kLow) + 0.5 * down : value(kLowCentre);
-    grid_.origin.x = has(kLeft) ? value(kLeft) + 0.5 * grid_.dx : value(kLeftCentre);
+    const double low = has(Low) ? value(Low) + 0.5 * down : value(LowCentre);
+    grid_.origin.x = has(Left) ? value(Left) + 0.5 * grid_.dx : value(LeftCentre);
     grid_.origin.y = low + down * static_cast<double>(grid_.rows - 1);
 }
 
@@ -246,7 +246,7 @@ void GridText::take_elevation(std::string_view token) {
     const auto read = number_in<double>(token);
     const std::size_t index = grid_.elevations.size();
     grid_.elevations.push_back(nothing);
-    if (read && (std::isnan(*read) || (has(kNoData) && *read == value(kNoData)))) return;
+    if (read && (std::isnan(*read) || (has(NoData) && *read == value(NoData)))) return;
     const double elevation = read.value_or(0.0) * settled_.elevation_factor;
     if (read && std::fabs(elevation) <= kMaxCoordinate) {
         grid_.elevations.back() = elevation;

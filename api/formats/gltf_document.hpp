@@ -45,7 +45,7 @@ class GltfDocument {
     static bool flag(const JsonText& object, const char* name);
     static std::optional<JsonText> extension(const JsonText& object, const char* name);
 
-    std::optional<std::size_t> whole(const JsonText& value, const std::string& pointer);
+    std::optional<std::size_t> whole(const JsonText& text, const std::string& pointer);
     std::optional<std::size_t> index(const JsonText& object, const char* name,
                                      const std::string& pointer);
     std::size_t number(const JsonText& object, const char* name, const std::string& pointer,

@@ -149,11 +149,13 @@ void add_own(TableBuilder& table, const std::string& name, const std::vector<jso
     column.name = name;
     if (are_numbers) {
         std::vector<std::optional<double>> numbers;
+        numbers.reserve(values.size());
         for (const json* value : values)
             numbers.push_back(value == nullptr ? std::optional<double>() : value->get<double>());
         return table.add_numbers(std::move(column), numbers);
     }
     std::vector<std::optional<std::string>> texts;
+    texts.reserve(values.size());
     for (const json* value : values)
         texts.push_back(value == nullptr ? std::optional<std::string>() : text_of(*value));
     table.add_texts(std::move(column), texts);

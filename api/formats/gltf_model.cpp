@@ -15,8 +15,6 @@ namespace tinsmith::api {
 
 namespace {
 
-using json::JsonText;
-
 /// Extensions that change nothing about where the triangles are; a trailing star: all such.
 constexpr std::string_view kHarmless[] = {"KHR_draco_mesh_compression",
                                           "KHR_mesh_quantization",
@@ -199,7 +197,7 @@ class ModelReader : private GltfDocument {
                              GltfDraco{needed(*draco, "bufferView", there),
                                        ids ? needed(*ids, "POSITION", there + "/attributes") : 0};
                      }
-                     primitives.push_back(std::move(out));
+                     primitives.push_back(out);
                  });
         });
     }

@@ -68,9 +68,9 @@ class TiffFile {
     }
 
     struct Entry {
-        std::uint64_t tag;
-        std::uint64_t type;
-        std::uint64_t count;
+        std::uint64_t tag = 0;
+        std::uint64_t type = 0;
+        std::uint64_t count = 0;
         std::optional<std::uint64_t>
             number;  ///< the first, where it is whole and stands right here
     };

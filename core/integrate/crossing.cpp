@@ -118,6 +118,7 @@ std::optional<Point2> March::find_split_along(Side edge, Point2 p) const {
         std::fabs(p.x - a.x) + std::fabs(p.y - a.y) < std::fabs(p.x - b.x) + std::fabs(p.y - b.y);
     const Point2 far = a_is_nearer ? b : a;
     const double length = std::sqrt((far.x - p.x) * (far.x - p.x) + (far.y - p.y) * (far.y - p.y));
+    // NOLINTNEXTLINE(cert-flp30-c): it grows by a factor, nothing is counted
     for (double step = reach_of_rounding_; step < length; step *= 2.0) {
         const Point2 q{p.x + (far.x - p.x) * (step / length),
                        p.y + (far.y - p.y) * (step / length)};

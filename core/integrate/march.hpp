@@ -38,7 +38,7 @@ struct MarchTally {
 /// An elevation that a path brings to a vertex of its chain.
 struct OwnElevation {
     VertexId vertex;
-    double z;
+    double z = 0.0;
 };
 
 /// Bounds on a march, and how to ask for its end.
@@ -251,9 +251,9 @@ class March {
     const bool knows_facets_;
     double reach_of_rounding_;   ///< 4 ulp of the mesh's largest coordinate
     double flat_;                ///< a step of the surface that is none
-    double snap_;                ///< of this segment
+    double snap_ = 0.0;          ///< of this segment
     double outline_bend_ = 0.0;  ///< how far at most an edge of the outline was bent
-    double near_;                ///< what is nearer is one: half of that, or the snap
+    double near_ = 0.0;          ///< what is nearer is one: half of that, or the snap
     MarchTally tally_;
     std::optional<Error> error_;
     std::vector<VertexId> changed_;

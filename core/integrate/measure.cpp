@@ -264,7 +264,7 @@ class Survey {
             is_plain |= Mask{glance.is_blunter_than(bound)} << i;
         }
         after_.pass_over(count_of(is_plain));
-        const Mask all = ~Mask{0} >> (kBlock - count);
+        const Mask all = count == kBlock ? ~Mask{0} : (Mask{1} << count) - 1;
         for_each_bit(all & ~is_plain, [&](std::size_t i) { look_after(triangle(i)); });
     }
 

@@ -17,7 +17,7 @@ struct Measurement {
 /// The records of one shape: of its march, and of swaps across facets that followed it, if any.
 struct Touched {
     const UndoRecord& march;
-    std::size_t triangle_end;  ///< how many triangles there were after the march
+    std::size_t triangle_end = 0;  ///< how many triangles there were after the march
     const UndoRecord* across = nullptr;
 };
 

@@ -16,9 +16,9 @@ namespace tinsmith::core {
 
 /// A segment of the request, of nonzero length, from point `index` of its path to the next.
 struct InputSegment {
-    std::size_t shape;
-    std::size_t path;
-    std::size_t index;
+    std::size_t shape = 0;
+    std::size_t path = 0;
+    std::size_t index = 0;
     Point2 a;
     Point2 b;
 };

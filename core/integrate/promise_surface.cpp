@@ -95,6 +95,7 @@ class Comparison {
                         own.emplace_back(p, p);
         if (own.empty()) return;
         std::vector<Box> boxes;
+        boxes.reserve(own.size());
         for (const auto& [a, b] : own)
             boxes.push_back(Box::around(a, b, reach));
         BoxGrid near_own(std::move(boxes));

@@ -30,9 +30,9 @@ struct March::Passing {
     Side across;
     VertexId a_id, b_id;
     const Tin::Vertex &a, &b, &c, &d;
-    AreaEstimate of_a, of_b;  ///< with the input segment: a's is negative, b's positive
-    double longest;           ///< no more than the edge's length
-    double manhattan;         ///< no less
+    AreaEstimate of_a{}, of_b{};  ///< with the input segment: a's is negative, b's positive
+    double longest = 0.0;         ///< no more than the edge's length
+    double manhattan = 0.0;       ///< no less
 };
 
 namespace {

@@ -126,7 +126,8 @@ template <typename Visit>
 void BoundaryIndex::for_each_part_of(const Part& cell, Point2 p, Point2 q, double margin,
                                      Visit& visit) const {
     // One waits for each halving above: at most 47 of either kind until a side is all rounding.
-    std::array<Part, 128> waiting;
+    // As many as are waiting are written.
+    std::array<Part, 128> waiting;  // NOLINT(cppcoreguidelines-pro-type-member-init)
     waiting[0] = cell;
     for (std::size_t count = 1; count > 0;) {
         const Part part = waiting[--count];

@@ -78,13 +78,13 @@ void GridBuilder::hint() {
         return found;
     };
     hint_columns_ = places(columns_, [this](std::size_t c, const auto& corners) {
-        std::array<double, 3> x;
+        std::array<double, 3> x{};
         for (unsigned i = 0; i < 3; ++i)
             x[i] = x_[c + static_cast<std::size_t>(compass_.post({}, corners[i]).column)];
         return tin_.hint_column((x[0] + x[1] + x[2]) / 3.0);
     });
     hint_rows_ = places(rows_, [this](std::size_t r, const auto& corners) {
-        std::array<double, 3> y;
+        std::array<double, 3> y{};
         for (unsigned i = 0; i < 3; ++i)
             y[i] = y_[r + static_cast<std::size_t>(compass_.post({}, corners[i]).row)];
         return tin_.hint_row((y[0] + y[1] + y[2]) / 3.0) * tin_.hint_columns_;
@@ -106,7 +106,7 @@ void GridBuilder::hint() {
 void GridBuilder::hint(std::size_t begin, std::size_t end) {
     for (std::ptrdiff_t row = 0; row < rows_; ++row) {
         const HintPlaces& rows = hint_rows_[static_cast<std::size_t>(row)];
-        std::array<bool, 4> is_here;
+        std::array<bool, 4> is_here{};
         for (unsigned without = 0; without < 4; ++without)
             is_here[without] = rows[without] >= begin && rows[without] < end;
         if (std::find(is_here.begin(), is_here.end(), true) == is_here.end()) continue;

@@ -71,13 +71,13 @@ void GridBuilder::write_cells(Band& band, std::ptrdiff_t row) {
 
 void GridBuilder::write_inner_cells(GridPlace first, std::ptrdiff_t end) {
     const auto [row, column] = first;
-    std::array<Pattern, 8> patterns;
+    std::array<Pattern, 8> patterns{};
     for (unsigned i = 0; i < patterns.size(); ++i) {
         const auto cut_by = [i](unsigned bit) {
             return (i >> bit & 1U) != 0 ? CellCut::Falling : CellCut::Rising;
         };
         // North and south it does not matter which.
-        std::array<CellCut, 4> across;
+        std::array<CellCut, 4> across{};
         across.fill(CellCut::Rising);
         for (const unsigned edge : {1U, 3U})
             across[edge] = cut_by(compass_.across(first, edge).column < column ? 0 : 2);
@@ -111,7 +111,7 @@ void GridBuilder::write_cell(Band& band, GridPlace cell) {
     const CellCut cut = cuts_[cell];
     const unsigned count = triangles_of(cut).count;
     if (count == 0) return;
-    std::array<CellCut, 4> across;
+    std::array<CellCut, 4> across{};
     for (unsigned edge = 0; edge < 4; ++edge)
         across[edge] = cuts_[compass_.across(cell, edge)];
     const Cell triangles = triangles_in(cell, cut, across);
@@ -172,7 +172,7 @@ void GridBuilder::write_posts(Band& band, std::ptrdiff_t row) {
 void GridBuilder::write_inner_posts(Band& band, GridPlace first, std::ptrdiff_t end) {
     const auto [row, column] = first;
     band.take(first, end);
-    std::array<std::uint32_t, 16> triangles;
+    std::array<std::uint32_t, 16> triangles{};
     const std::array<std::uint32_t, 2> slots{first_slot({row - 1, column - 1}),
                                              first_slot({row, column - 1})};
     for (unsigned falling = 0; falling < 16; ++falling)

@@ -118,6 +118,7 @@ class BoundaryLook {
         const double far = std::max(tin_.bounds().max.x, p_.x);
         // A little way first, and then four times as far each time: the nearest crossing tells, and
         // what lies beyond it costs nothing. Ends after the factor's logarithm of the width.
+        // NOLINTNEXTLINE(cert-flp30-c): it grows by a factor, nothing is counted
         for (double reach = width / 256.0; p_.x + reach < far; reach *= 4.0) {
             look(p_.x + reach);
             if (found_.kind != Location::Kind::Outside) return found_;

@@ -64,8 +64,8 @@ class ConstraintHistory {
 
   private:
     struct Split {
-        std::uint64_t edge;  ///< both ends, whichever way round
-        std::size_t index;   ///< in `Tin::constraint_splits`
+        std::uint64_t edge = 0;  ///< both ends, whichever way round
+        std::size_t index = 0;   ///< in `Tin::constraint_splits`
         VertexId p;
     };
     /// The splits of the edge, oldest first.

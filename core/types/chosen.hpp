@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -11,8 +12,9 @@ namespace tinsmith::core {
 /// every other time, and compilers make one of `?:` when they like.
 template <typename T>
 inline T chosen(bool first, T one, T other) {
-    static_assert(sizeof(T) == 4 || sizeof(T) == 8);
-    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+    constexpr std::size_t kSize = sizeof(T);  // NOLINT(bugprone-sizeof-expression): pointers, too
+    static_assert(kSize == 4 || kSize == 8);
+    using Bits = std::conditional_t<kSize == 4, std::uint32_t, std::uint64_t>;
     const Bits ones = std::bit_cast<Bits>(one), others = std::bit_cast<Bits>(other);
     const Bits mask = Bits{0} - Bits{first};
     return std::bit_cast<T>(others ^ ((ones ^ others) & mask));
