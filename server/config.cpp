@@ -83,9 +83,9 @@ CLI::Option* add_setting(CLI::App& app, const std::string& name, T& value,
 
 /// A limit: where it is kept, and what --help says.
 struct NumberFlag {
-    const char* name;
-    std::size_t* value;
-    const char* text;
+    const char* name = nullptr;
+    std::size_t* value = nullptr;
+    const char* text = nullptr;
     bool is_bytes = false;
 };
 

@@ -12,9 +12,9 @@ namespace tinsmith::server {
 
 void add_quotas(CLI::App& app, KeyQuotas& quotas) {
     struct QuotaFlag {
-        const char* name;
-        std::optional<std::size_t>* value;
-        const char* text;
+        const char* name = nullptr;
+        std::optional<std::size_t>* value = nullptr;
+        const char* text = nullptr;
         bool is_bytes = false;
     };
     const QuotaFlag flags[] = {

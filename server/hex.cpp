@@ -9,9 +9,9 @@ constexpr std::string_view kDigits = "0123456789abcdef";
 
 }  // namespace
 
-std::string hex_of(std::string_view text) {
+std::string hex_of(std::string_view bytes) {
     std::string out;
-    for (const char c : text) {
+    for (const char c : bytes) {
         const auto byte = static_cast<unsigned char>(c);
         out.push_back(kDigits[byte >> 4]);
         out.push_back(kDigits[byte & 15U]);

@@ -139,16 +139,16 @@ class Session {
     /// The same as it was at a version, made on a copy: operations are taken back and, where they
     /// were undone or removed since, run again. Requires nothing of the session but its lock for
     /// the time of a copy. Errors: cancelled.
-    VersionOutcome tin_at(std::uint64_t version, const RunLimits& limits) const;
+    VersionOutcome tin_at(std::uint64_t wanted, const RunLimits& limits) const;
     /// The same with the polygons of that version.
-    StateOutcome state_at(std::uint64_t version, const RunLimits& limits) const;
+    StateOutcome state_at(std::uint64_t wanted, const RunLimits& limits) const;
     /// Whether `tin_at` has it; nothing: it does.
-    std::variant<std::monostate, VersionGone, VersionAhead> missing(std::uint64_t version) const;
+    std::variant<std::monostate, VersionGone, VersionAhead> missing(std::uint64_t wanted) const;
     /// Bytes of a copy of the mesh. Waits for no edit.
     std::size_t mesh_bytes() const;
     /// About what making the mesh of an earlier version takes: the largest that it was since. Takes
     /// the readers' lock.
-    std::size_t mesh_bytes_since(std::uint64_t version) const;
+    std::size_t mesh_bytes_since(std::uint64_t wanted) const;
     /// All polygons, or the one of that id, as they lie in the mesh now; no polygon where none has
     /// it. Holds the readers' lock while their regions are found.
     DrapedCopy draped(std::optional<std::string_view> id = {}) const;
@@ -184,10 +184,9 @@ class Session {
     /// At most `limit` changes, those that came after a version.
     HistoryCopy history(std::uint64_t after = 0, std::size_t limit = SIZE_MAX) const;
     /// How that version came about.
-    std::variant<ChangeCopy, VersionGone, VersionAhead> change_at(std::uint64_t version) const;
+    std::variant<ChangeCopy, VersionGone, VersionAhead> change_at(std::uint64_t wanted) const;
     /// What leads from that version to the mesh as it is now. 0: the whole mesh.
-    std::variant<api::MeshDelta, VersionGone, VersionAhead> delta_since(
-        std::uint64_t version) const;
+    std::variant<api::MeshDelta, VersionGone, VersionAhead> delta_since(std::uint64_t wanted) const;
 
   private:
     PolygonOutcome integrate_dry(const PolygonEdit& edit) const;

@@ -237,6 +237,7 @@ std::string quota_text(double value) {
 
 std::vector<NamedQuota> named_quotas(const KeyQuotas& quotas) {
     std::vector<NamedQuota> list;
+    list.reserve(std::size(kQuotas));
     for (const Quota& one : kQuotas)
         list.push_back({one.name, one.get(quotas)});
     return list;

@@ -45,8 +45,9 @@ Step<Page> require_page(const Request& request, std::string_view kind) {
     }
     if (const auto text = request.parameter("cursor")) {
         auto after = id_in(*text, kind);
-        if (after) page.after = *std::move(after);
-        if (!after) {
+        if (after) {
+            page.after = *std::move(after);
+        } else {
             fault(
                 "cursor",
                 "This is no cursor of this list: take it from the Link header of the page before.");

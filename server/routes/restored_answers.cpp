@@ -83,7 +83,7 @@ void restore_answers(Services& services) {
         Unpacker unpack(row.bytes);
         unpack(answer);
         if (!unpack.done()) continue;  // of another release
-        services.answers.restore({row.scope, row.key}, row.print, std::move(answer),
+        services.answers.restore({row.scope, row.key}, row.print, answer,
                                  std::chrono::seconds(std::max<std::int64_t>(now - row.time, 0)));
     }
     for (const VaultEntry& made : services.vault->entries()) {

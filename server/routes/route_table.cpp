@@ -79,8 +79,8 @@ std::vector<Route> make_routes(Services& services) {
     const auto json = [to](Function function) { return as_json(to(function)); };
     const auto terrain = api::terrain_option_names();
     const auto mesh = api::mesh_option_names();
-    static const auto polygons = with_gltf_options(api::polygon_option_names());
-    static const auto edit = with_gltf_options(kEdit);
+    static const auto kPolygons = with_gltf_options(api::polygon_option_names());
+    static const auto kEditOrMesh = with_gltf_options(kEdit);
     std::vector<Route> routes{
         {"GET", "/", {}, to(get_page)},
         {"GET", "/healthz", {}, to(get_health)},
@@ -101,7 +101,7 @@ std::vector<Route> make_routes(Services& services) {
         {"PUT", "/v1/sessions/{id}", terrain, long_making(put_session)},
         {"DELETE", "/v1/sessions/{id}", {}, to(delete_session)},
         {"POST", "/v1/sessions/{id}/fork", {}, as_json(change(fork_session))},
-        {"POST", "/v1/sessions/{id}/polygons", polygons, change(integrate_polygons)},
+        {"POST", "/v1/sessions/{id}/polygons", kPolygons, change(integrate_polygons)},
         {"GET", "/v1/sessions/{id}/polygons", kPageParameters, to(list_polygons)},
         {"GET", "/v1/sessions/{id}/polygons/{pid}", {}, to(get_polygon)},
         {"DELETE", "/v1/sessions/{id}/polygons/{pid}", kRemoval, to(delete_polygon)},
@@ -111,7 +111,7 @@ std::vector<Route> make_routes(Services& services) {
         {"PUT", "/v1/sessions/{id}/locks", kLockParameters, change(put_locks)},
         {"DELETE", "/v1/sessions/{id}/locks", kLockParameters, change(delete_locks)},
         {"GET", "/v1/sessions/{id}/locks", kPageParameters, to(get_locks)},
-        {"POST", "/v1/sessions/{id}/edits", edit, change(edit_polygon)},
+        {"POST", "/v1/sessions/{id}/edits", kEditOrMesh, change(edit_polygon)},
         {"POST", "/v1/sessions/{id}/undo", {}, change(undo_edit)},
         {"POST", "/v1/sessions/{id}/redo", {}, change(redo_edit)},
         {"GET", "/v1/sessions/{id}/history", kPageParameters, json(get_history)},

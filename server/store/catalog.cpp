@@ -71,10 +71,10 @@ std::int64_t Catalog::new_snapshot() {
     return next_snapshot_++;
 }
 
-void Catalog::add(const StoredFacts& session, Known known) {
+void Catalog::add(const StoredFacts& session, const Known& known) {
     const std::lock_guard lock(mutex_);
     births_being_made_.erase(session.birth);
-    sessions_.try_emplace(session.birth, std::move(known));
+    sessions_.try_emplace(session.birth, known);
 }
 
 void Catalog::remove(const std::string& birth) {

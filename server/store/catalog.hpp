@@ -39,7 +39,7 @@ class Catalog {
     std::int64_t new_session();
     std::int64_t new_snapshot();
 
-    void add(const StoredFacts& session, Known known);
+    void add(const StoredFacts& session, const Known& known);
     void remove(const std::string& birth);
     void set_number(const std::string& birth, std::int64_t number);
     void set_newest(const std::string& birth, std::uint64_t version);

@@ -199,7 +199,7 @@ Committed Journal::Implementation::write_parts(const std::string& birth, store::
                 wait_for_one();
             if (outcome) break;
             publish.last_part = part;
-            task->what = std::move(publish);
+            task->what = std::move(publish);  // NOLINT(bugprone-use-after-move): the last turn
         }
         under_way.add(writer_.submit_large(std::move(task)));
         if (under_way.size() >= kPartsAtATime) wait_for_one();

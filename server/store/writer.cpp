@@ -22,7 +22,7 @@ std::future<Committed> ready(std::promise<Committed>& promise, Committed value) 
 
 }  // namespace
 
-Writer::Writer(const JournalOptions& options, Database database, Inventory inventory,
+Writer::Writer(const JournalOptions& options, Database database, const Inventory& inventory,
                Catalog& catalog, Pulse& pulse)
     : options_(options),
       catalog_(catalog),

@@ -37,8 +37,8 @@ namespace tinsmith::server::store {
 /// was none. Tasks of one lane are done in the order in which they came.
 class Writer {
   public:
-    Writer(const JournalOptions& options, Database database, Inventory inventory, Catalog& catalog,
-           Pulse& pulse);
+    Writer(const JournalOptions& options, Database database, const Inventory& inventory,
+           Catalog& catalog, Pulse& pulse);
     /// Does what waits, then ends.
     ~Writer();
     Writer(const Writer&) = delete;

@@ -188,7 +188,7 @@ void Writer::commit_large(TaskPtr task) {
 }
 
 Result Writer::commit_tasks(std::span<const TaskPtr> tasks, SideWork* side_work) {
-    const Result fault =
+    Result fault =
         transact(entries_of(tasks), bytes_of(tasks), [this, tasks, side_work]() -> Result {
             std::unordered_map<std::string, std::uint64_t> newest;
             for (const TaskPtr& task : tasks) {
