@@ -84,11 +84,11 @@ class UnderWay {
 class Journal::Implementation {
   public:
     Implementation(JournalOptions options, FolderLock lock, store::Database database,
-                   Inventory inventory)
+                   const Inventory& inventory)
         : options_(std::move(options)),
           lock_(std::move(lock)),
           catalog_(inventory),
-          writer_(options_, std::move(database), std::move(inventory), catalog_, pulse_) {}
+          writer_(options_, std::move(database), inventory, catalog_, pulse_) {}
 
     Committed append(JournalEntry entry);
     Committed create(const StoredFacts& session, const SnapshotHead& head, std::string_view bytes);
@@ -198,8 +198,9 @@ Committed Journal::Implementation::write_parts(const std::string& birth, store::
             while (!under_way.empty())
                 wait_for_one();
             if (outcome) break;
+            // NOLINTNEXTLINE(bugprone-use-after-move): the last turn
             publish.last_part = part;
-            task->what = std::move(publish);  // NOLINT(bugprone-use-after-move): the last turn
+            task->what = std::move(publish);
         }
         under_way.add(writer_.submit_large(std::move(task)));
         if (under_way.size() >= kPartsAtATime) wait_for_one();
