@@ -78,6 +78,8 @@ constexpr double kMargin = 1.0 + 0x1p-18;
 /// Rounding moves areas by less than 2^-49 of the product of two edges: squares of areas by less
 /// than a part in 2^20 where the squared sine of the smallest angle is as large as this.
 constexpr double kLeast = 0x1p-56;
+/// Squares of areas that are smaller than this may have lost digits.
+constexpr double kSmallest = 0x1p-960;
 
 /// What a triangle is like, at a glance: right to the margin, which is enough to pass over most.
 class Glance {
@@ -100,11 +102,13 @@ class Glance {
     /// Never true where `TriangleShape::has_angle_below` is.
     bool is_blunter_than(double bound) const {
         return level_squared_ + upright_squared_ >
-               kMargin * std::max(bound, kLeast) * longest_squared_;
+               std::max(kMargin * std::max(bound, kLeast) * longest_squared_, kSmallest);
     }
-    /// Never true where `TriangleShape::is_steeper_than` is. Always false for needles in plan.
+    /// Never true where `TriangleShape::is_steeper_than` is. Of needles in plan it says so only of
+    /// level ones.
     bool is_flatter_than(double squared_slope) const {
-        return std::max(kMargin * level_squared_, squared_slope * kLeast * longest_squared_) <=
+        const double least = std::max(kLeast * longest_squared_, kSmallest);
+        return std::max(kMargin * level_squared_, squared_slope * least) <=
                squared_slope * upright_squared_;
     }
 
@@ -131,7 +135,8 @@ class PlanGlance {
     }
 
     bool is_blunter_than(double bound) const {
-        return area_squared_ > kMargin * std::max(bound, kLeast) * longest_squared_;
+        return area_squared_ >
+               std::max(kMargin * std::max(bound, kLeast) * longest_squared_, kSmallest);
     }
 
   private:
