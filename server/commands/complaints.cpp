@@ -26,16 +26,21 @@ void complain(const std::string& text) {
 }
 
 void tell_of(const std::string& file, const api::Terrain& terrain) {
+    const std::string of_file = file + ": ";
     for (const std::string& note : terrain.notes)
-        complain(file + ": " + note);
+        complain(of_file + note);
     if (!terrain.repairs) return;
     for (const core::Repair& repair : *terrain.repairs) {
-        std::string indices;
+        std::string text = of_file;
+        text += "repaired: ";
+        text += core::repair_name(repair.kind);
+        text += ": ";
+        text += std::to_string(repair.count);
+        text += ':';
         for (const std::size_t index : repair.indices)
-            indices += " " + std::to_string(index);
-        if (repair.count > repair.indices.size()) indices += " ...";
-        complain(file + ": repaired: " + std::string(core::repair_name(repair.kind)) + ": " +
-                 std::to_string(repair.count) + ":" + indices);
+            text += ' ' + std::to_string(index);
+        if (repair.count > repair.indices.size()) text += " ...";
+        complain(text);
     }
 }
 

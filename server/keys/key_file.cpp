@@ -181,8 +181,9 @@ std::variant<Keys, KeyFaults> parse_keys(std::string_view text, const std::strin
             if (!ids.insert(key.id).second) wrong.push_back("the id " + in_quotes(key.id) + before);
             if (!hashes.insert(key.hash).second) wrong.push_back("the SHA-256" + before);
         }
+        const std::string place = path + ":" + std::to_string(number) + ": ";
         for (const std::string& fault : wrong)
-            faults.push_back(path + ":" + std::to_string(number) + ": " + fault);
+            faults.push_back(place + fault);
         keys.push_back(std::move(key));
     }
     if (faults.size() > kMostFaults) faults.resize(kMostFaults);

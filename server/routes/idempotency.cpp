@@ -35,8 +35,12 @@ std::optional<std::string> key_in(std::string_view field) {
 
 std::string print_of(const Request& request) {
     std::string query;
-    for (const auto& [name, value] : request.query)
-        query += name + '\n' + value + '\n';  // control characters are in neither
+    for (const auto& [name, value] : request.query) {
+        for (const std::string& text : {name, value}) {
+            query += text;
+            query += '\n';  // control characters are in neither
+        }
+    }
     const std::array<std::string_view, 5> parts{request.method, request.path, query,
                                                 request.header("content-type").value_or(""),
                                                 request.body};
